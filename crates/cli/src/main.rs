@@ -1,0 +1,2 @@
+//! The `linkdyn` program.
+fn main() {}
