@@ -1,1 +1,13 @@
 #![doc = include_str!("../README.md")]
+
+mod bearing;
+mod bristle;
+mod characteristic;
+mod parameter;
+
+pub use bearing::{Bearing, BearingModel, Capacity, JournalBearing, PadGuide, Surface};
+pub use bristle::{Bristle, BristleModel, BristlePoint, ElastoPlastic, Guard, LuGre, Partials};
+pub use characteristic::{
+    Characteristic, Cubic, Exponential, Friction, HyperbolicTangent, PiecewiseLinear, Stribeck, Sum, Value, Viscous,
+};
+pub use parameter::{Expected, ParameterError};
