@@ -1,1 +1,23 @@
 #![doc = include_str!("../README.md")]
+
+mod control;
+mod error;
+mod integration;
+mod method;
+mod problem;
+mod runge_kutta;
+mod settings;
+mod statistics;
+mod weights;
+
+pub use error::IntegrationError;
+pub use integration::{Integration, Progress};
+pub use method::{Counted, Method, Step};
+pub use problem::{EvalError, Ode, SecondOrder, Source};
+pub use runge_kutta::{
+    ClassicalTableau, Coefficients, Dop853, Dop853Tableau, DormandPrince5, DormandPrince5Tableau, Embedded, Rk4,
+    RungeKutta, Tableau,
+};
+pub use settings::{Settings, SettingsError, Tolerance};
+pub use statistics::Statistics;
+pub use weights::Weights;

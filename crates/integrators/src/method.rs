@@ -1,0 +1,128 @@
+//! What a method of integration must provide to the driver.
+
+use crate::{EvalError, Ode, SettingsError, Statistics, Weights};
+
+/// A problem whose evaluations are counted; the only way in which methods reach it.
+#[derive(Debug)]
+pub struct Counted<'a, P: ?Sized> {
+    problem: &'a mut P,
+    statistics: &'a mut Statistics,
+}
+
+impl<'a, P: Ode + ?Sized> Counted<'a, P> {
+    /// Counts the evaluations of `problem` in `statistics`.
+    pub fn new(problem: &'a mut P, statistics: &'a mut Statistics) -> Self {
+        Self { problem, statistics }
+    }
+
+    /// Evaluates and counts f(t, y).
+    ///
+    /// # Errors
+    /// Those of the problem.
+    #[inline]
+    pub fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        self.statistics.evaluations += 1;
+        self.problem.rhs(t, y, dy)
+    }
+
+    /// As [`rhs`](Counted::rhs), for evaluations that only interpolation needs.
+    ///
+    /// # Errors
+    /// Those of the problem.
+    pub fn rhs_for_interpolation(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        self.statistics.dense_evaluations += 1;
+        self.rhs(t, y, dy)
+    }
+
+    /// Counts one corrector iteration.
+    pub fn count_iteration(&mut self) {
+        self.statistics.iterations += 1;
+    }
+}
+
+/// Where a step begins and how long it is; negative `h` runs backward.
+#[derive(Debug, Clone, Copy)]
+pub struct Step<'a> {
+    /// Time at the beginning.
+    pub t: f64,
+    /// Length.
+    pub h: f64,
+    /// State at the beginning.
+    pub y: &'a [f64],
+}
+
+/// A method of integration: makes one step and interpolates in it. The driver, [`Integration`](crate::Integration), does the rest.
+///
+/// Order of the calls: `prepare` once; `restart`; then for each step `attempt`, repeated with smaller `h` until its error is at
+/// most 1; the driver projects the new state and calls `accept`; after that any number of `interpolate`. An `attempt` or
+/// `accept` that fails must leave the method able to attempt the same step again.
+pub trait Method<P: ?Sized> {
+    /// Order of the solution p: the error of a run is O(hᵖ).
+    fn order(&self) -> u32;
+
+    /// Allocates all memory and checks that method and problem fit together.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if they do not, or if a parameter of the method is out of range.
+    fn prepare(&mut self, problem: &P) -> Result<(), SettingsError>;
+
+    /// Begins at (t, y), forgetting all earlier steps.
+    ///
+    /// # Errors
+    /// Those of the problem.
+    fn restart(&mut self, problem: &mut Counted<'_, P>, t: f64, y: &[f64]) -> Result<(), EvalError>;
+
+    /// Tries a step: writes the new state and an estimate of its error (all zero if the method has none), and returns the norm of that error.
+    ///
+    /// # Errors
+    /// Those of the problem.
+    fn attempt(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        weights: &Weights,
+        y_new: &mut [f64],
+        error: &mut [f64],
+    ) -> Result<f64, EvalError>;
+
+    /// Takes note that the last attempt is accepted with the state `y_new`, `projected` telling whether it has changed since.
+    ///
+    /// # Errors
+    /// Those of the problem, if f(t + h, y_new) is evaluated here; the step is then rejected after all.
+    fn accept(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        y_new: &[f64],
+        projected: bool,
+    ) -> Result<(), EvalError>;
+
+    /// f at the state reached.
+    fn derivative(&self) -> &[f64];
+
+    /// Length of the next step, positive, after a step of length `h` > 0 had this norm of error (above 1: it was rejected).
+    fn next_step(&mut self, h: f64, error: f64) -> f64;
+
+    /// Writes the state at t + `theta` h of the step accepted last, which led to `y_new`.
+    ///
+    /// # Errors
+    /// Those of the problem, for methods that need further evaluations.
+    fn interpolate(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        y_new: &[f64],
+        theta: f64,
+        y: &mut [f64],
+    ) -> Result<(), EvalError>;
+
+    /// The step of a method of fixed step.
+    fn fixed_step(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether earlier steps enter into the next one, so that a first step must be chosen anew after a restart.
+    fn is_multistep(&self) -> bool {
+        false
+    }
+}

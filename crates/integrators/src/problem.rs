@@ -1,0 +1,87 @@
+//! What a user states: the right-hand side of y' = f(t, y), and how an evaluation may fail.
+
+use std::error::Error;
+
+/// Any error of the caller, passed through unchanged.
+pub type Source = Box<dyn Error + Send + Sync>;
+
+/// Why a right-hand side could not be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub enum EvalError {
+    /// A smaller step may succeed: the trial state lies outside the domain of the problem.
+    #[error("evaluation failed for this trial state: {0}")]
+    Retry(#[source] Source),
+    /// No step will succeed; the integration stops.
+    #[error("evaluation failed: {0}")]
+    Abort(#[source] Source),
+}
+
+/// An initial value problem y' = f(t, y).
+///
+/// `&mut self` lets a problem own its scratch memory. A method tries steps and throws some of them away, so nothing that
+/// `rhs` stores may influence a later evaluation.
+pub trait Ode {
+    /// The number of components of y.
+    fn dim(&self) -> usize;
+
+    /// Writes f(t, y) into all of `dy`.
+    ///
+    /// # Errors
+    /// [`EvalError::Retry`] where f is not defined at this (t, y), [`EvalError::Abort`] where going on is pointless.
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError>;
+
+    /// Puts `y` back on the invariants of the problem and returns whether it was changed.
+    ///
+    /// Called on each accepted step, and by whoever wants an interpolated state on the invariants. By default there are none.
+    ///
+    /// # Errors
+    /// As for [`rhs`](Ode::rhs); a `Retry` rejects the step.
+    fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, EvalError> {
+        Ok(false)
+    }
+}
+
+/// A problem whose state begins with positions and their rates.
+///
+/// The first `pairs` entries of y are positions, the next `pairs` are their rates (`y[i]' = y[pairs + i]`); what follows is of
+/// first order.
+pub trait SecondOrder: Ode {
+    /// The number of positions.
+    fn pairs(&self) -> usize;
+}
+
+impl<P: Ode + ?Sized> Ode for &mut P {
+    fn dim(&self) -> usize {
+        (**self).dim()
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        (**self).rhs(t, y, dy)
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
+        (**self).project(t, y)
+    }
+}
+
+impl<P: SecondOrder + ?Sized> SecondOrder for &mut P {
+    fn pairs(&self) -> usize {
+        (**self).pairs()
+    }
+}
+
+impl<P: Ode + ?Sized> Ode for Box<P> {
+    fn dim(&self) -> usize {
+        (**self).dim()
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        (**self).rhs(t, y, dy)
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
+        (**self).project(t, y)
+    }
+}
+
+impl<P: SecondOrder + ?Sized> SecondOrder for Box<P> {
+    fn pairs(&self) -> usize {
+        (**self).pairs()
+    }
+}
