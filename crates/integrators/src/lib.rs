@@ -2,8 +2,10 @@
 
 mod control;
 mod error;
+mod hermite;
 mod integration;
 mod method;
+mod newmark;
 mod problem;
 mod runge_kutta;
 mod settings;
@@ -13,6 +15,7 @@ mod weights;
 pub use error::IntegrationError;
 pub use integration::{Integration, Progress};
 pub use method::{Counted, Method, Step};
+pub use newmark::{Corrector, Newmark, NotSettled};
 pub use problem::{EvalError, Ode, SecondOrder, Source};
 pub use runge_kutta::{
     ClassicalTableau, Coefficients, Dop853, Dop853Tableau, DormandPrince5, DormandPrince5Tableau, Embedded, Rk4,
