@@ -1,0 +1,11 @@
+#![doc = include_str!("../README.md")]
+
+pub mod args;
+pub mod errors;
+pub mod figure;
+pub mod interrupt;
+pub mod machine;
+pub mod output;
+// pub mod progress;
+// pub mod results;
+// pub mod summary;
