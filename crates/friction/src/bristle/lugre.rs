@@ -10,7 +10,8 @@ use crate::{Expected, ParameterError};
 /// ```
 ///
 /// Facts, each with a test: |z| ≤ µ_s/σ₀ is never left; a lasting slip ends in
-/// µ = g(v) sgn(v) + σ₂ v; the model is passive at v if and only if σ₁ |v| ≤ 4 g(v). With a
+/// µ = g(v) sgn(v) + σ₂ v; the model is passive at v, whatever the deflection, if (for
+/// σ₂ = 0 only if) σ₁ |v| ≤ 4 g(v). With a
 /// constant σ₁ a bristle at rest meets a slip v with µ = σ₁ v, which may lie far above µ_s: see
 /// [`Guard`]. The bristle of a sticking contact creeps under an oscillating load: see
 /// [`ElastoPlastic`](crate::ElastoPlastic).
@@ -108,11 +109,11 @@ impl LuGre {
     pub fn step(&self, slip: f64, bristle: f64, duration: f64) -> f64 {
         let (v, z, h) = (slip, bristle, duration);
         let sigma0 = self.bristle_stiffness;
-        if v == 0.0 || sigma0 == 0.0 {
+        if v * h == 0.0 || sigma0 == 0.0 {
             return z + v * h;
         }
         let (g, _) = self.steady_curve(v);
-        let x = sigma0 * v.abs() * h / g;
+        let x = sigma0 * (v * h).abs() / g;
         z + ((g / sigma0).copysign(v) - z) * -(-x).exp_m1()
     }
 
@@ -166,7 +167,10 @@ impl BristleModel for LuGre {
         self.static_coefficient / self.bristle_stiffness
     }
 
-    /// σ₁(v) |v| ≤ 4 g(v), both necessary and sufficient for the storage σ₀ z²/2.
+    /// σ₁(v) |v| ≤ 4 g(v): with s = σ₀ z sgn(v)/g and a = σ₁ |v|/g the power beyond that stored is
+    /// g |v| (s² - a s + a) + σ₂ v², for σ₂ = 0 not negative at every s if and only if a ≤ 4. The
+    /// worst s, a/2 > 2, may lie beyond the limit µ_s/g of a bristle that started within it; for
+    /// such bristles the bound is sufficient, and necessary only where µ_s/g reaches that far.
     fn is_passive_at(&self, slip: f64) -> bool {
         self.damping(slip).0 * slip.abs() <= 4.0 * self.steady_curve(slip).0
     }

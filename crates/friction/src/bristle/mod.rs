@@ -45,8 +45,8 @@ pub trait BristleModel: Debug + Send + Sync {
     /// Largest deflection \[m\], never exceeded by a bristle that starts within it.
     fn bristle_limit(&self) -> f64;
 
-    /// Whether friction takes at least the power that the bristle stores, for every deflection, at
-    /// this slip speed \[m/s\]. Where not, friction may drive the motion.
+    /// Whether friction is sure to take at least the power that the bristle stores, for every
+    /// deflection, at this slip speed \[m/s\]. Where not, friction may drive the motion.
     fn is_passive_at(&self, slip: f64) -> bool;
 
     /// Coefficient of friction \[-\] that a lasting slip \[m/s\] ends in; zero at rest.

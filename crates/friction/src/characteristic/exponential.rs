@@ -24,10 +24,10 @@ impl Characteristic for Exponential {
     #[inline]
     fn at(&self, slip: f64) -> Value {
         let k = self.steepness / self.reference_speed;
-        let x = k * slip.abs();
+        let m = (-k * slip.abs()).exp_m1();
         Value {
-            value: (-(-x).exp_m1()).copysign(slip),
-            slope: k * (-x).exp(),
+            value: (-m).copysign(slip),
+            slope: k * (1.0 + m),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::{Expected, ParameterError};
 /// The coefficient it multiplies is the kinetic one, and |χ| ≤ ρ. The curve of the literature jumps
 /// at v = 0; tanh makes a function of it, continuous with its slope for every p > 0. It comes close
 /// to ρ only where v_r is small against v_s: with v_r = v_s/10 and p = 2 the peak is at
-/// 1 + 0.94 (ρ - 1). It does not hold a load at rest: for that take a bristle model.
+/// about 1 + 0.9 (ρ - 1). It does not hold a load at rest: for that take a bristle model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
