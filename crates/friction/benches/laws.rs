@@ -36,7 +36,7 @@ const LUGRE: LuGre = LuGre {
     kinetic_coefficient: 0.1,
     stribeck_speed: 0.0175,
     bristle_stiffness: 600.0,
-    bristle_damping: 24.494897427831781,
+    bristle_damping: 24.49489742783178,
     viscous_coefficient: 0.0,
     guard: Guard::None,
 };
