@@ -9,19 +9,19 @@ use crate::{Counted, EvalError, Ode, Weights};
 pub(crate) struct StepControl {
     alpha: f64,
     beta: f64,
-    pub(crate) safety: f64,
-    pub(crate) shrink: f64,
-    pub(crate) grow: f64,
+    safety: f64,
+    shrink: f64,
+    grow: f64,
     old_error: f64,
 }
 
 impl StepControl {
-    /// For an error estimate of order h^`exponent`, with proportional-integral coefficient `beta`.
-    pub(crate) fn new(exponent: u32, beta: f64) -> Self {
+    /// For an error estimate of order h^`exponent`.
+    pub(crate) fn new(exponent: u32, beta: f64, safety: f64) -> Self {
         Self {
             alpha: 1.0 / f64::from(exponent) - 0.75 * beta,
             beta,
-            safety: 0.9,
+            safety,
             shrink: 0.2,
             grow: 10.0,
             old_error: 1e-4,

@@ -345,11 +345,12 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         self.statistics.projections += 1;
         let projected = self.problem.project(t_new, &mut self.y_new)?;
         let mut problem = Counted::new(&mut self.problem, &mut self.statistics);
-        self.method.accept(&mut problem, step, &self.y_new, projected)?;
-        match first_non_finite(self.method.derivative()) {
-            Some(component) => Err(Refusal::NonFinite { component }),
-            None => Ok(error),
+        let f_new = self.method.close(&mut problem, step, &self.y_new, projected)?;
+        if let Some(component) = first_non_finite(f_new) {
+            return Err(Refusal::NonFinite { component });
         }
+        self.method.accept(step, &self.weights, &self.y_new);
+        Ok(error)
     }
 
     /// The step after an accepted one: no growth after a refusal, no loss because this one was cut short of `wanted`.

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod adams;
 mod control;
 mod error;
 mod hermite;
@@ -10,8 +11,10 @@ mod problem;
 mod runge_kutta;
 mod settings;
 mod statistics;
+mod sums;
 mod weights;
 
+pub use adams::Adams;
 pub use error::IntegrationError;
 pub use integration::{Integration, Progress};
 pub use method::{Counted, Method, Step};

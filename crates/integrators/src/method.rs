@@ -54,8 +54,8 @@ pub struct Step<'a> {
 /// A method of integration: makes one step and interpolates in it. The driver, [`Integration`](crate::Integration), does the rest.
 ///
 /// Order of the calls: `prepare` once; `restart`; then for each step `attempt`, repeated with smaller `h` until its error is at
-/// most 1; the driver projects the new state and calls `accept`; after that any number of `interpolate`. An `attempt` or
-/// `accept` that fails must leave the method able to attempt the same step again.
+/// most 1; the driver projects the new state, calls `close` and, if the derivative is finite, `accept`; after that any number
+/// of `interpolate`. Until `accept` the method must be able to attempt the same step again.
 pub trait Method<P: ?Sized> {
     /// Order of the solution p: the error of a run is O(hᵖ).
     fn order(&self) -> u32;
@@ -85,17 +85,22 @@ pub trait Method<P: ?Sized> {
         error: &mut [f64],
     ) -> Result<f64, EvalError>;
 
-    /// Takes note that the last attempt is accepted with the state `y_new`, `projected` telling whether it has changed since.
+    /// Completes the last attempt, whose error is small enough: returns f(t + h, y_new).
+    ///
+    /// `y_new` is the state of the attempt, `projected` tells whether it has been changed since.
     ///
     /// # Errors
-    /// Those of the problem, if f(t + h, y_new) is evaluated here; the step is then rejected after all.
-    fn accept(
+    /// Those of the problem; the step is then rejected after all.
+    fn close(
         &mut self,
         problem: &mut Counted<'_, P>,
         step: Step<'_>,
         y_new: &[f64],
         projected: bool,
-    ) -> Result<(), EvalError>;
+    ) -> Result<&[f64], EvalError>;
+
+    /// Takes the closed attempt as the step made.
+    fn accept(&mut self, step: Step<'_>, weights: &Weights, y_new: &[f64]);
 
     /// f at the state reached.
     fn derivative(&self) -> &[f64];

@@ -157,7 +157,8 @@ impl<P: SecondOrder + ?Sized> Method<P> for Newmark {
             problem.count_iteration();
             problem.rhs(step.t + step.h, y_new, &mut self.f)?;
             change = self.correct(step, y_new);
-            if goal.is_some_and(|goal| change <= goal) {
+            // What is not finite the driver refuses.
+            if change.is_nan() || goal.is_some_and(|goal| change <= goal) {
                 return Ok(0.0);
             }
         }
@@ -173,16 +174,19 @@ impl<P: SecondOrder + ?Sized> Method<P> for Newmark {
         }
     }
 
-    fn accept(
+    fn close(
         &mut self,
         problem: &mut Counted<'_, P>,
         step: Step<'_>,
         y_new: &[f64],
         _projected: bool,
-    ) -> Result<(), EvalError> {
+    ) -> Result<&[f64], EvalError> {
         problem.rhs(step.t + step.h, y_new, &mut self.f_new)?;
+        Ok(&self.f_new)
+    }
+
+    fn accept(&mut self, _step: Step<'_>, _weights: &Weights, _y_new: &[f64]) {
         self.moved_on = true;
-        Ok(())
     }
 
     fn derivative(&self) -> &[f64] {

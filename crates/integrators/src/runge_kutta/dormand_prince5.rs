@@ -65,4 +65,5 @@ impl Tableau for DormandPrince5Tableau {
 impl Embedded for DormandPrince5Tableau {
     const EXPONENT: u32 = 5;
     const BETA: f64 = 0.04;
+    const SAFETY: f64 = 0.9;
 }

@@ -3,12 +3,11 @@
 mod classical;
 mod dop853;
 mod dormand_prince5;
-mod sums;
 
 use std::marker::PhantomData;
 
-use self::sums::{add, combine};
 use crate::control::StepControl;
+use crate::sums::{add, combine};
 use crate::{Counted, EvalError, Method, Ode, SettingsError, Step, Weights};
 
 pub use classical::{ClassicalTableau, Rk4};
@@ -62,6 +61,8 @@ pub trait Embedded: Tableau {
     const EXPONENT: u32;
     /// Coefficient of the integral part of the step control.
     const BETA: f64;
+    /// Safety factor of the step control.
+    const SAFETY: f64;
 }
 
 /// An explicit Runge-Kutta method with the coefficients `T`.
@@ -92,7 +93,7 @@ enum Steps {
 impl<T: Embedded> Default for RungeKutta<T> {
     /// With steps chosen by the tolerances.
     fn default() -> Self {
-        Self::with(Steps::Adaptive(StepControl::new(T::EXPONENT, T::BETA)))
+        Self::with(Steps::Adaptive(StepControl::new(T::EXPONENT, T::BETA, T::SAFETY)))
     }
 }
 
@@ -219,20 +220,23 @@ impl<P: Ode + ?Sized, T: Tableau> Method<P> for RungeKutta<T> {
         }
     }
 
-    fn accept(
+    fn close(
         &mut self,
         problem: &mut Counted<'_, P>,
         step: Step<'_>,
         y_new: &[f64],
         projected: bool,
-    ) -> Result<(), EvalError> {
+    ) -> Result<&[f64], EvalError> {
+        let last = self.range(Self::LAST);
         if projected || !matches!(T::COEFFICIENTS.error, Estimate::WithNewDerivative(_)) {
-            let last = self.range(Self::LAST);
-            problem.rhs(step.t + step.h, y_new, &mut self.stages[last])?;
+            problem.rhs(step.t + step.h, y_new, &mut self.stages[last.clone()])?;
         }
+        Ok(&self.stages[last])
+    }
+
+    fn accept(&mut self, _step: Step<'_>, _weights: &Weights, _y_new: &[f64]) {
         self.moved_on = true;
         self.dense_ready = false;
-        Ok(())
     }
 
     fn derivative(&self) -> &[f64] {

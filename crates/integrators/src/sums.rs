@@ -1,17 +1,15 @@
 //! Linear combinations of stages, the only loops that every step runs through.
 
-use super::Row;
-
 /// out = y + h Σ aⱼ kⱼ, where the stages k lie one after the other in `stages`.
 #[inline]
-pub(super) fn combine(out: &mut [f64], y: &[f64], h: f64, row: Row, stages: &[f64]) {
+pub(crate) fn combine(out: &mut [f64], y: &[f64], h: f64, row: &[(usize, f64)], stages: &[f64]) {
     out.copy_from_slice(y);
     add(out, h, row, stages);
 }
 
 /// out += h Σ aⱼ kⱼ, the whole sum being formed before it is added.
 #[inline]
-pub(super) fn add(out: &mut [f64], h: f64, row: Row, stages: &[f64]) {
+pub(crate) fn add(out: &mut [f64], h: f64, row: &[(usize, f64)], stages: &[f64]) {
     match row.len() {
         1 => add_terms::<1>(out, h, row, stages),
         2 => add_terms::<2>(out, h, row, stages),
@@ -30,7 +28,7 @@ pub(super) fn add(out: &mut [f64], h: f64, row: Row, stages: &[f64]) {
 }
 
 /// `add` with a number of terms known to the compiler, so that it unrolls the inner loop and vectorises the outer one.
-fn add_terms<const K: usize>(out: &mut [f64], h: f64, row: Row, stages: &[f64]) {
+fn add_terms<const K: usize>(out: &mut [f64], h: f64, row: &[(usize, f64)], stages: &[f64]) {
     let n = out.len();
     let a: [f64; K] = std::array::from_fn(|j| row[j].1);
     let k: [&[f64]; K] = std::array::from_fn(|j| &stages[row[j].0 * n..][..n]);
