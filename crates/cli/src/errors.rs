@@ -144,15 +144,19 @@ impl Error for CliError {
     }
 }
 
-//RR impl From<crate::results::ResultsError> for CliError {
-//RR     fn from(error: crate::results::ResultsError) -> Self {
-//RR         let failure = if error.is_usage() { Failure::Usage } else { Failure::Failed };
-//RR         let hint = error.hint();
-//RR         let mut wrapped = Self::new(failure, error.to_string()).with_source(error);
-//RR         wrapped.hint = hint;
-//RR         wrapped
-//RR     }
-//RR }
+impl From<crate::results::ResultsError> for CliError {
+    fn from(error: crate::results::ResultsError) -> Self {
+        let failure = if error.is_usage() {
+            Failure::Usage
+        } else {
+            Failure::Failed
+        };
+        let hint = error.hint();
+        let mut wrapped = Self::new(failure, error.to_string()).with_source(error);
+        wrapped.hint = hint;
+        wrapped
+    }
+}
 
 impl From<crate::figure::FigureError> for CliError {
     fn from(error: crate::figure::FigureError) -> Self {

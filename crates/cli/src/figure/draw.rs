@@ -106,7 +106,7 @@ pub(super) fn svg(figure: &Figure) -> Result<String, FigureError> {
     for (layout, strokes) in layouts.iter().zip(&strokes) {
         page = page.add(axes(layout)).add(curves(strokes));
         if figure.legend == Legend::Panels && layout.panel.series.len() > 1 {
-            page = page.add(panel_legend(layout));
+            page = page.add(panel_legend(layout, strokes));
         }
     }
     Ok(page.to_string())
@@ -216,7 +216,7 @@ fn layout(figure: &Figure, top: f64) -> Result<(Vec<Layout<'_>>, f64), FigureErr
     }
 
     let cell = (f64::from(figure.width) - 14.0) / columns as f64;
-    let most_y = (figure.panel_height / 32).clamp(2, 9) as usize;
+    let most_y = (figure.panel_height / 26).clamp(2, 9) as usize;
     let mut axes = Vec::new();
     for (index, panel) in figure.panels.iter().enumerate() {
         let group: Vec<&Panel> = figure
@@ -301,7 +301,7 @@ fn layout(figure: &Figure, top: f64) -> Result<(Vec<Layout<'_>>, f64), FigureErr
                 y_label_at: left + 9.0,
             });
         }
-        y += f64::from(figure.panel_height) + if panels.iter().any(|i| shows(*i)) { 40.0 } else { 6.0 };
+        y += f64::from(figure.panel_height) + if panels.iter().any(|i| shows(*i)) { 40.0 } else { 8.0 };
     }
     Ok((layouts, (y + 2.0).ceil()))
 }
@@ -630,14 +630,26 @@ fn legend_entry(series: &Series, (x, y): (f64, f64)) -> Group {
         .add(text(&series.label, LABEL, (x + 40.0, y), "start"))
 }
 
-fn panel_legend(layout: &Layout<'_>) -> Group {
+fn panel_legend(layout: &Layout<'_>, strokes: &[Strokes]) -> Group {
     let series: Vec<&Series> = layout.panel.series.iter().filter(|s| !s.label.is_empty()).collect();
     let longest = series.iter().map(|s| text_width(&s.label, LABEL)).fold(0.0, f64::max);
     let (width, height) = ((longest + 54.0).round(), 16.0 * series.len() as f64 + 8.0);
-    let Area {
-        left, top, width: room, ..
-    } = layout.plot;
-    let corner = (left + room - width - 6.0, top + 6.0);
+    let plot = layout.plot;
+    let (left, right) = (plot.left + 6.0, plot.left + plot.width - width - 6.0);
+    let (top, bottom) = (plot.top + 6.0, plot.top + plot.height - height - 6.0);
+    // The corner that hides least.
+    let hidden = |(x, y): (f64, f64)| {
+        let within = |p: &Pixel| {
+            (x * K..(x + width) * K).contains(&f64::from(p.0)) && (y * K..(y + height) * K).contains(&f64::from(p.1))
+        };
+        strokes
+            .iter()
+            .flat_map(|s| s.lines.iter().flatten().chain(&s.dots))
+            .filter(|p| within(p))
+            .count()
+    };
+    let corners = [(right, top), (left, top), (right, bottom), (left, bottom)];
+    let corner = corners.into_iter().min_by_key(|c| hidden(*c)).unwrap_or((right, top));
     let ground = Rectangle::new()
         .set("x", corner.0)
         .set("y", corner.1)
