@@ -1,1 +1,26 @@
 #![doc = include_str!("../README.md")]
+
+mod articulated;
+mod composite;
+mod constraint;
+mod energy;
+mod error;
+mod evaluate;
+mod inertia;
+pub mod lagrange;
+mod linear;
+mod load;
+mod project;
+mod reaction;
+mod reaction_loop;
+mod symmetric;
+mod system;
+mod workspace;
+
+pub use energy::Energy;
+pub use error::{DynamicsError, SystemError};
+pub use inertia::{InertiaError, RigidInertia};
+pub use load::{Capacity, Load, Loads, Motion, Reaction, ReactionLoad};
+pub use project::Drift;
+pub use system::{Baumgarte, Description, Formulation, ReactionSolver, System};
+pub use workspace::{Counters, Workspace};

@@ -1,0 +1,215 @@
+//! Articulated-body recursion \[Featherstone 2008, ch. 7\]: the inverse of the mass matrix of a tree as a product of one
+//! inward and one outward walk, at a cost linear in the number of links.
+
+use crate::composite::along;
+use crate::symmetric::{SpatialInertia, Symmetric};
+use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Twist, Wrench};
+use nalgebra::{Matrix3, Vector3};
+
+/// Articulated inertia about a node's origin, global axes: `torque = I alpha + H a`, `force = H^T alpha + M a`.
+#[derive(Clone, Copy, Debug)]
+struct ArticulatedInertia {
+    angular: Symmetric,
+    coupling: Matrix3<f64>,
+    linear: Symmetric,
+}
+
+impl ArticulatedInertia {
+    #[inline]
+    fn rigid(body: &SpatialInertia) -> Self {
+        Self {
+            angular: body.second,
+            coupling: body.moment.cross_matrix(),
+            linear: Symmetric::axial(body.mass, 0.0, &Vector3::zeros()),
+        }
+    }
+
+    /// Takes out the freedom that answers to `u` with pivot `1/inverse`.
+    #[inline]
+    fn release(&mut self, u: &Wrench, inverse: f64) {
+        self.angular.subtract_square(inverse, &u.torque);
+        self.linear.subtract_square(inverse, &u.force);
+        self.coupling -= u.torque * (u.force * inverse).transpose();
+    }
+
+    /// Adds the same inertia seen from a point that lies `arm` before the origin to `target`.
+    #[inline]
+    fn add_shifted_to(&self, arm: &Vector3<f64>, target: &mut Self) {
+        let m = &self.linear;
+        let columns = [
+            Vector3::new(m.xx, m.xy, m.xz),
+            Vector3::new(m.xy, m.yy, m.yz),
+            Vector3::new(m.xz, m.yz, m.zz),
+        ];
+        let coupling = self.coupling + Matrix3::from_columns(&columns.map(|c| arm.cross(&c)));
+        // I - H [r] + [r] H'^T, of which only the upper triangle is needed. Row k of H [r] is h_k x r.
+        let (h, g) = (&self.coupling, &coupling);
+        let row = |k: usize| Vector3::new(h[(k, 0)], h[(k, 1)], h[(k, 2)]).cross(arm);
+        let column = |k: usize| arm.cross(&Vector3::new(g[(k, 0)], g[(k, 1)], g[(k, 2)]));
+        let (r0, r1, r2) = (row(0), row(1), row(2));
+        let (c0, c1, c2) = (column(0), column(1), column(2));
+        let i = &self.angular;
+        target.angular.add(&Symmetric {
+            xx: i.xx - r0.x + c0.x,
+            yy: i.yy - r1.y + c1.y,
+            zz: i.zz - r2.z + c2.z,
+            xy: i.xy - r0.y + c1.x,
+            xz: i.xz - r0.z + c2.x,
+            yz: i.yz - r1.z + c2.y,
+        });
+        target.linear.add(m);
+        target.coupling += coupling;
+    }
+}
+
+/// What one freedom leaves behind: its wrench `U = IA S` and `1/(S U)`.
+#[derive(Clone, Copy, Debug)]
+struct Pivot {
+    u: Wrench,
+    inverse: f64,
+}
+
+/// Factors of the articulated-body recursion.
+#[derive(Clone, Debug)]
+pub(crate) struct Articulated {
+    inertias: Vec<ArticulatedInertia>,
+    pivots: Vec<Pivot>,
+    inverse_diagonal: Vec<f64>,
+    wrenches: Vec<Wrench>,
+    twists: Vec<Twist>,
+}
+
+impl Articulated {
+    pub fn new(tree: &Tree) -> Self {
+        let nodes = tree.nodes().len();
+        let pivot = Pivot {
+            u: Wrench::zero(),
+            inverse: 0.0,
+        };
+        Self {
+            inertias: vec![ArticulatedInertia::rigid(&SpatialInertia::ZERO); nodes],
+            pivots: vec![pivot; nodes],
+            inverse_diagonal: vec![0.0; tree.speeds()],
+            wrenches: vec![Wrench::zero(); nodes],
+            twists: vec![Twist::zero(); nodes],
+        }
+    }
+
+    /// Factors the mass matrix and takes the first column of `columns` (the generalised forces, less the links' own bias
+    /// `wrenches`) inward on the same walk. On failure tells the speed and its pivot.
+    #[inline]
+    pub fn factor(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        bodies: &[SpatialInertia],
+        wrenches: &[Wrench],
+        columns: &mut [f64],
+        stride: usize,
+    ) -> Result<(), (usize, f64)> {
+        for (articulated, body) in self.inertias.iter_mut().zip(bodies) {
+            *articulated = ArticulatedInertia::rigid(body);
+        }
+        self.wrenches.copy_from_slice(wrenches);
+        for i in (1..nodes.len()).rev() {
+            let (node, here) = (&nodes[i], &positions[i]);
+            let mut inertia = self.inertias[i];
+            let mut wrench = self.wrenches[i];
+            if node.freedom != Freedom::None {
+                let u = match node.freedom {
+                    Freedom::Linear => Wrench {
+                        torque: inertia.coupling * here.axis,
+                        force: inertia.linear.times(&here.axis),
+                    },
+                    _ => Wrench {
+                        torque: inertia.angular.times(&here.axis),
+                        force: inertia.coupling.tr_mul(&here.axis),
+                    },
+                };
+                let pivot = along(node, here, &u);
+                if pivot.is_nan() || pivot <= 0.0 {
+                    return Err((node.speed, pivot));
+                }
+                let inverse = 1.0 / pivot;
+                self.pivots[i] = Pivot { u, inverse };
+                self.inverse_diagonal[node.speed] = inverse;
+                let force = &mut columns[node.speed * stride];
+                *force -= along(node, here, &wrench);
+                if node.parent != 0 {
+                    inertia.release(&u, inverse);
+                    let share = *force * inverse;
+                    wrench.torque += u.torque * share;
+                    wrench.force += u.force * share;
+                }
+            }
+            if node.parent != 0 {
+                self.wrenches[node.parent] += wrench.shifted(&here.arm);
+                inertia.add_shifted_to(&here.arm, &mut self.inertias[node.parent]);
+            }
+        }
+        Ok(())
+    }
+
+    pub fn inverse_diagonal(&self) -> &[f64] {
+        &self.inverse_diagonal
+    }
+
+    /// Takes a column of generalised forces inward.
+    pub fn inward(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        columns: &mut [f64],
+        stride: usize,
+        column: usize,
+    ) {
+        self.wrenches.fill(Wrench::zero());
+        for i in (1..nodes.len()).rev() {
+            let (node, here) = (&nodes[i], &positions[i]);
+            let mut wrench = self.wrenches[i];
+            if node.freedom != Freedom::None {
+                let force = &mut columns[node.speed * stride + column];
+                *force -= along(node, here, &wrench);
+                let pivot = &self.pivots[i];
+                let share = *force * pivot.inverse;
+                wrench.torque += pivot.u.torque * share;
+                wrench.force += pivot.u.force * share;
+            }
+            if node.parent != 0 {
+                self.wrenches[node.parent] += wrench.shifted(&here.arm);
+            }
+        }
+    }
+
+    /// Takes a column, already divided by the pivots, outward to rates of the speeds.
+    #[inline]
+    pub fn outward(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        columns: &mut [f64],
+        stride: usize,
+        column: usize,
+    ) {
+        for i in 1..nodes.len() {
+            let (node, here) = (&nodes[i], &positions[i]);
+            let before = self.twists[node.parent];
+            let mut twist = Twist {
+                angular: before.angular,
+                linear: before.linear + before.angular.cross(&here.arm),
+            };
+            if node.freedom != Freedom::None {
+                let pivot = &self.pivots[i];
+                let rate = &mut columns[node.speed * stride + column];
+                if node.parent != 0 {
+                    *rate -= pivot.u.power(&twist) * pivot.inverse;
+                }
+                match node.freedom {
+                    Freedom::Linear => twist.linear += here.axis * *rate,
+                    _ => twist.angular += here.axis * *rate,
+                }
+            }
+            self.twists[i] = twist;
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! One evaluation: from a state to accelerations and multipliers.
+
+use crate::composite::along;
+use crate::error::DynamicsError;
+use crate::lagrange;
+use crate::load::{Loads, Motion, power};
+use crate::symmetric::SpatialInertia;
+use crate::system::{Formulation, System};
+use crate::workspace::{MassFactor, Workspace, moves, start_columns};
+use linkdyn_kinematics::{Twist, Wrench};
+
+impl System {
+    /// Accelerations and multipliers at time `t` \[s\], coordinates `q` and speeds `v`; they are found in `work`.
+    ///
+    /// `M v' = f + G^T lambda`, `G v' + gamma = 0`, with `f` all generalised forces less the bias forces.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] with time and place. `work` then holds no result.
+    pub fn evaluate(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) -> Result<(), DynamicsError> {
+        work.counters.evaluations += 1;
+        self.set_up(t, q, v, work)?;
+        self.solve(work);
+        if !self.reaction_loads.is_empty() {
+            self.solve_reaction_loads(t, v, work)?;
+        }
+        if work.constraint.redundant() > 0 {
+            work.counters.redundant += 1;
+        }
+        match work.rates.iter().position(|a| !a.is_finite()) {
+            None => Ok(()),
+            Some(speed) => Err(DynamicsError::NotFinite {
+                time: t,
+                speed,
+                value: work.rates[speed],
+            }),
+        }
+    }
+
+    /// Motion, loads, factors of the mass matrix, and all right-hand sides taken inward.
+    #[inline]
+    fn set_up(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) -> Result<(), DynamicsError> {
+        let base = -self.gravity;
+        self.tree
+            .sweep(q, v, &base, &mut work.positions, &mut work.velocities, &mut work.biases);
+        self.apply_loads(t, q, v, work);
+        start_columns(&mut work.columns, work.stride, &work.generalised);
+        if self.formulation == Formulation::Lagrange {
+            self.take_outside_wrenches(work);
+        }
+        self.own_wrenches(work);
+
+        let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+        let stride = work.stride;
+        let singular = |(speed, pivot)| DynamicsError::SingularMass { time: t, speed, pivot };
+        match &mut work.mass {
+            MassFactor::Composite(mass) => {
+                if self.formulation == Formulation::Lagrange {
+                    let equations = lagrange::equations(self, q, v);
+                    equations.write(mass.matrix_mut(), &mut work.columns, stride, &mut work.constraint.gamma);
+                } else {
+                    work.wrenches.copy_from_slice(&work.own);
+                    mass.assemble(
+                        nodes,
+                        positions,
+                        &work.inertias,
+                        &mut work.wrenches,
+                        &mut work.columns,
+                        stride,
+                    );
+                }
+                mass.factor().map_err(singular)?;
+                self.closure_columns(work);
+                if let MassFactor::Composite(mass) = &work.mass {
+                    mass.inward(&mut work.columns, stride);
+                }
+            }
+            MassFactor::Articulated(mass) => {
+                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns, stride)
+                    .map_err(singular)?;
+                self.closure_columns(work);
+                if let MassFactor::Articulated(mass) = &mut work.mass {
+                    for column in 1..stride {
+                        mass.inward(nodes, work.positions.nodes(), &mut work.columns, stride, column);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Generalised forces and outside wrenches of all loads, and the power of those that are not conservative.
+    #[inline]
+    fn apply_loads(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) {
+        work.generalised.fill(0.0);
+        work.own.fill(Wrench::zero());
+        work.power = 0.0;
+        if self.loads.is_empty() {
+            return;
+        }
+        let motion = Motion {
+            t,
+            q,
+            v,
+            positions: &work.positions,
+            velocities: &work.velocities,
+        };
+        let mut loads = Loads {
+            generalised: &mut work.generalised,
+            counter: &mut work.own,
+        };
+        let (active, conservative) = self.loads.split_at(self.active_loads);
+        active.iter().for_each(|load| load.apply(&motion, &mut loads));
+        work.power = power(loads.generalised, loads.counter, v, &work.velocities);
+        let mut loads = Loads {
+            generalised: &mut work.generalised,
+            counter: &mut work.own,
+        };
+        conservative.iter().for_each(|load| load.apply(&motion, &mut loads));
+    }
+
+    /// Adds the links' inertial wrenches for vanishing rates to the outside ones.
+    #[inline]
+    fn own_wrenches(&self, work: &mut Workspace) {
+        for (i, body) in self.bodies.iter().enumerate().skip(1) {
+            let inertia = body.turned(&work.positions.nodes()[i].rotation);
+            let w = &work.velocities.nodes()[i].angular;
+            let bias = &work.biases.nodes()[i];
+            let h = &inertia.moment;
+            let mut own = inertial_wrench(&inertia, bias);
+            own.force += w.cross(&w.cross(h));
+            own.torque += w.cross(&inertia.second.times(w));
+            work.own[i] += own;
+            work.inertias[i] = inertia;
+        }
+    }
+
+    /// The Lagrange form knows no wrenches: takes the outside ones inward to generalised forces.
+    fn take_outside_wrenches(&self, work: &mut Workspace) {
+        work.wrenches.copy_from_slice(&work.own);
+        for (i, node) in self.tree.nodes().iter().enumerate().skip(1).rev() {
+            let here = &work.positions.nodes()[i];
+            let wrench = work.wrenches[i];
+            if moves(node.freedom) {
+                work.columns[node.speed * work.stride] -= along(node, here, &wrench);
+            }
+            work.wrenches[node.parent] += wrench.shifted(&here.arm);
+        }
+    }
+
+    /// Closure gradient and biases, drift terms, and unit forces of the reaction loads.
+    #[inline]
+    fn closure_columns(&self, work: &mut Workspace) {
+        let (positions, velocities) = (&work.positions, &work.velocities);
+        let lagrange = self.formulation == Formulation::Lagrange;
+        let mut first = 0;
+        for closure in &self.closures {
+            let range = first..first + closure.equations();
+            if !lagrange {
+                closure.gradient(&self.tree, positions, &mut work.columns, work.stride, 1 + first);
+                closure.bias(
+                    positions,
+                    velocities,
+                    &work.biases,
+                    &mut work.constraint.gamma[range.clone()],
+                );
+            }
+            if let Some(drift) = self.baumgarte {
+                let gamma = &mut work.constraint.gamma[range.clone()];
+                let lambda = &mut work.constraint.lambda[range];
+                closure.rate(positions, velocities, lambda);
+                gamma
+                    .iter_mut()
+                    .zip(&*lambda)
+                    .for_each(|(g, rate)| *g += 2.0 * drift.alpha * rate);
+                closure.residual(positions, lambda);
+                gamma
+                    .iter_mut()
+                    .zip(&*lambda)
+                    .for_each(|(g, phi)| *g += drift.beta * drift.beta * phi);
+            }
+            first += closure.equations();
+        }
+        for (k, load) in self.reaction_loads.iter().enumerate() {
+            work.columns[load.speed * work.stride + 1 + self.equations + k] = 1.0;
+        }
+    }
+
+    /// Multipliers and rates without the reaction loads.
+    #[inline]
+    fn solve(&self, work: &mut Workspace) {
+        let m = self.equations;
+        let inverse = match &work.mass {
+            MassFactor::Composite(mass) => mass.inverse_diagonal(),
+            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
+        };
+        if m > 0 {
+            work.constraint.factor(&work.columns, work.stride, inverse);
+            work.constraint.solve_forces(&work.columns, work.stride, inverse);
+        }
+        for ((rate, row), inverse) in work
+            .rates
+            .iter_mut()
+            .zip(work.columns.chunks_exact(work.stride))
+            .zip(inverse)
+        {
+            let closed: f64 = row[1..=m].iter().zip(&work.constraint.lambda).map(|(w, l)| w * l).sum();
+            *rate = (row[0] + closed) * inverse;
+        }
+        self.outward(work);
+    }
+
+    /// Takes `work.rates`, divided by the pivots, outward.
+    #[inline]
+    pub(crate) fn outward(&self, work: &mut Workspace) {
+        match &mut work.mass {
+            MassFactor::Composite(mass) => mass.outward(&mut work.rates, 1),
+            MassFactor::Articulated(mass) => {
+                mass.outward(self.tree.nodes(), work.positions.nodes(), &mut work.rates, 1, 0);
+            }
+        }
+    }
+}
+
+/// `I a` of a link: force and torque about its origin for an acceleration.
+#[inline]
+pub(crate) fn inertial_wrench(inertia: &SpatialInertia, a: &Twist) -> Wrench {
+    Wrench {
+        torque: inertia.second.times(&a.angular) + inertia.moment.cross(&a.linear),
+        force: a.linear * inertia.mass + a.angular.cross(&inertia.moment),
+    }
+}

@@ -1,0 +1,152 @@
+//! Projection of a state onto its closures, on position and velocity level.
+
+use crate::system::System;
+use crate::workspace::{MassFactor, Workspace};
+
+/// Residuals below this share of the largest distance from the origin (or of 1 m) are rounding and are left alone.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Newton steps on position level; drift of an accepted step needs one.
+const ITERATIONS: usize = 6;
+
+/// Drift found by [`System::project`] before it was taken away.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drift {
+    /// Largest closure residual \[m, -\].
+    pub position: f64,
+    /// Largest closure rate \[m/s, 1/s\].
+    pub velocity: f64,
+    /// Whether coordinates or speeds were changed.
+    pub changed: bool,
+}
+
+impl System {
+    /// Moves `q` and `v` back onto the closures along the shortest way in the metric of the mass matrix of the last
+    /// evaluation in `work` (any mass matrix near the state serves as a metric).
+    ///
+    /// This is meant for drift: from far away use [`linkdyn_kinematics::assembly`].
+    pub fn project(&self, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
+        let mut drift = Drift::default();
+        if self.tree.normalise(q) > ROUNDING {
+            drift.changed = true;
+        }
+        if self.closures.is_empty() {
+            return drift;
+        }
+        self.tree.positions(q, &mut work.positions);
+        let size = work
+            .positions
+            .nodes()
+            .iter()
+            .fold(1.0_f64, |s, node| s.max(node.origin.amax()));
+        let mut factored = false;
+        for iteration in 0..ITERATIONS {
+            let residual = self.residual(work);
+            if iteration == 0 {
+                drift.position = residual;
+            }
+            if residual.is_nan() || residual <= ROUNDING * size {
+                break;
+            }
+            self.factor_closures(work, &mut factored);
+            self.closure_step(work);
+            self.tree.displace(q, &work.rates);
+            self.tree.positions(q, &mut work.positions);
+            drift.changed = true;
+        }
+        self.tree.velocities(&work.positions, v, &mut work.velocities);
+        let fastest = v.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
+        drift.velocity = self.rate(work);
+        if drift.velocity > ROUNDING * size * fastest {
+            self.factor_closures(work, &mut factored);
+            self.closure_step(work);
+            v.iter_mut().zip(&work.rates).for_each(|(v, step)| *v += step);
+            drift.changed = true;
+        }
+        drift
+    }
+
+    /// Largest closure residual and rate at a state \[m, -\], \[m/s, 1/s\].
+    pub fn violation(&self, q: &[f64], v: &[f64], work: &mut Workspace) -> (f64, f64) {
+        if self.closures.is_empty() {
+            return (0.0, 0.0);
+        }
+        self.tree.positions(q, &mut work.positions);
+        self.tree.velocities(&work.positions, v, &mut work.velocities);
+        (self.residual(work), self.rate(work))
+    }
+
+    /// Residuals into `lambda`; returns the largest.
+    fn residual(&self, work: &mut Workspace) -> f64 {
+        let mut first = 0;
+        for closure in &self.closures {
+            closure.residual(&work.positions, &mut work.constraint.lambda[first..]);
+            first += closure.equations();
+        }
+        largest(&work.constraint.lambda)
+    }
+
+    /// Rates into `lambda`; returns the largest.
+    fn rate(&self, work: &mut Workspace) -> f64 {
+        let mut first = 0;
+        for closure in &self.closures {
+            closure.rate(&work.positions, &work.velocities, &mut work.constraint.lambda[first..]);
+            first += closure.equations();
+        }
+        largest(&work.constraint.lambda)
+    }
+
+    /// Closure gradient at the present positions, taken inward and factored; once is enough for a small drift.
+    fn factor_closures(&self, work: &mut Workspace, factored: &mut bool) {
+        if std::mem::replace(factored, true) {
+            return;
+        }
+        let stride = work.stride;
+        work.columns.fill(0.0);
+        let mut first = 0;
+        for closure in &self.closures {
+            closure.gradient(&self.tree, &work.positions, &mut work.columns, stride, 1 + first);
+            first += closure.equations();
+        }
+        let inverse = match &mut work.mass {
+            MassFactor::Composite(mass) => {
+                mass.inward(&mut work.columns, stride);
+                mass.inverse_diagonal()
+            }
+            MassFactor::Articulated(mass) => {
+                for column in 1..=self.equations {
+                    mass.inward(
+                        self.tree.nodes(),
+                        work.positions.nodes(),
+                        &mut work.columns,
+                        stride,
+                        column,
+                    );
+                }
+                mass.inverse_diagonal()
+            }
+        };
+        work.constraint.factor(&work.columns, stride, inverse);
+    }
+
+    /// The step `-M^-1 G^T S^-1 r` for the residual or rate `r` in `lambda`, left in `rates`.
+    fn closure_step(&self, work: &mut Workspace) {
+        let m = self.equations;
+        work.constraint.solve_lambda();
+        let inverse = match &work.mass {
+            MassFactor::Composite(mass) => mass.inverse_diagonal(),
+            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
+        };
+        let rows = work.columns.chunks_exact(work.stride).zip(inverse);
+        for (rate, (row, inverse)) in work.rates.iter_mut().zip(rows) {
+            let sum: f64 = row[1..=m].iter().zip(&work.constraint.lambda).map(|(w, l)| w * l).sum();
+            *rate = -sum * inverse;
+        }
+        self.outward(work);
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |s, x| if x.is_nan() { f64::NAN } else { f64::max(s, x.abs()) })
+}

@@ -1,0 +1,354 @@
+//! The loop reaction - load - acceleration.
+//!
+//! A load that depends on a joint's reaction changes the accelerations, and these change the reactions. For given position
+//! and velocity all of that but the load itself is linear: with the generalised forces `tau` of these loads the reactions are
+//! `r_j = base_j + sum_k K_jk tau_k`. What remains is the small system
+//!
+//! `tau_j + gain_j * capacity_j(r_j(tau)) = 0`
+//!
+//! on the loads alone, solved by Newton's method. Its Jacobian `J = 1 + d(gain capacity)/d tau` starts at the unit matrix for
+//! vanishing gains; where its determinant, the **measure**, falls to zero on the way to full gains, loads and reactions have
+//! no common equilibrium any more: the mechanism jams.
+
+use crate::error::DynamicsError;
+use crate::evaluate::inertial_wrench;
+use crate::linear::Lu;
+use crate::load::Reaction;
+use crate::reaction::{acceleration_step, in_axes_of};
+use crate::system::{ReactionSolver, System};
+use crate::workspace::{MassFactor, Workspace};
+use linkdyn_kinematics::Wrench;
+
+/// Newton steps before the solution is followed from vanishing loads on.
+const DIRECT_ITERATIONS: usize = 20;
+/// Newton steps at each stage of following.
+const STAGE_ITERATIONS: usize = 12;
+/// Smallest advance in the share of the loads that is still tried: the fold is then located to this share.
+const SMALLEST_STAGE: f64 = 1e-10;
+
+/// Scratch and results of the loop.
+#[derive(Clone, Debug)]
+pub(crate) struct ReactionLoop {
+    loads: usize,
+    /// Generalised forces found.
+    forces: Vec<f64>,
+    trial: Vec<f64>,
+    gains: Vec<f64>,
+    /// Reactions without these loads, one a load, in the successor's axes.
+    base: Vec<Reaction>,
+    /// Change of reaction `j` for unit force `k`, at `j * loads + k`.
+    influence: Vec<Reaction>,
+    /// Rates of the speeds for unit force `k`, at `speed * loads + k`.
+    rates: Vec<f64>,
+    /// Multipliers for unit force `k`, at `k * equations + row`.
+    multipliers: Vec<f64>,
+    jacobian: Lu,
+    step: Vec<f64>,
+    residual: f64,
+    measure: f64,
+}
+
+/// How an attempt to solve the loop ended.
+enum Outcome {
+    Solved,
+    /// Residual too large, with the relative size reached.
+    Open(f64),
+}
+
+impl ReactionLoop {
+    pub fn new(system: &System) -> Self {
+        let loads = system.reaction_loads.len();
+        Self {
+            loads,
+            forces: vec![0.0; loads],
+            trial: vec![0.0; loads],
+            gains: vec![0.0; loads],
+            base: vec![Wrench::zero(); loads],
+            influence: vec![Wrench::zero(); loads * loads],
+            rates: vec![0.0; loads * system.tree.speeds()],
+            multipliers: vec![0.0; loads * system.equations],
+            jacobian: Lu::new(loads),
+            step: vec![0.0; loads],
+            residual: 0.0,
+            measure: 1.0,
+        }
+    }
+
+    pub fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    pub fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    pub fn measure(&self) -> f64 {
+        self.measure
+    }
+
+    /// Residual of the loop at `trial` for a share of the gains, in `step`; fills the Jacobian. Returns the residual relative
+    /// to the largest load.
+    fn linearise(&mut self, system: &System, share: f64) -> f64 {
+        let n = self.loads;
+        let mut worst: f64 = 0.0;
+        let mut largest: f64 = 0.0;
+        for (j, load) in system.reaction_loads.iter().enumerate() {
+            let mut reaction = self.base[j];
+            for (influence, force) in self.influence[j * n..(j + 1) * n].iter().zip(&self.trial) {
+                reaction.force += influence.force * *force;
+                reaction.torque += influence.torque * *force;
+            }
+            let capacity = load.load.capacity(&reaction);
+            let gain = share * self.gains[j];
+            let residual = self.trial[j] + gain * capacity.value;
+            self.step[j] = -residual;
+            worst = worst.max(residual.abs());
+            largest = largest.max(self.trial[j].abs()).max((gain * capacity.value).abs());
+            let row = &mut self.jacobian.matrix[j * n..(j + 1) * n];
+            for (k, (entry, influence)) in row.iter_mut().zip(&self.influence[j * n..(j + 1) * n]).enumerate() {
+                let slope =
+                    capacity.gradient.force.dot(&influence.force) + capacity.gradient.torque.dot(&influence.torque);
+                *entry = gain * slope + f64::from(u8::from(j == k));
+            }
+            if residual.is_nan() {
+                return f64::NAN;
+            }
+        }
+        if largest == 0.0 { 0.0 } else { worst / largest }
+    }
+
+    /// Newton's method from `trial`; `measure` is that of the last Jacobian.
+    fn newton(&mut self, system: &System, share: f64, tolerance: f64, most: usize, iterations: &mut u64) -> Outcome {
+        let mut residual = f64::INFINITY;
+        for _ in 0..most {
+            residual = self.linearise(system, share);
+            if residual.is_nan() {
+                return Outcome::Open(residual);
+            }
+            *iterations += 1;
+            self.measure = self.jacobian.factor();
+            if residual <= tolerance {
+                self.residual = residual;
+                return Outcome::Solved;
+            }
+            if self.measure == 0.0 || self.measure.is_nan() {
+                return Outcome::Open(residual);
+            }
+            self.jacobian.solve(&mut self.step);
+            self.trial.iter_mut().zip(&self.step).for_each(|(x, dx)| *x += dx);
+        }
+        Outcome::Open(residual)
+    }
+
+    /// Follows the solution from vanishing loads to the full ones.
+    #[cold]
+    fn follow(
+        &mut self,
+        system: &System,
+        time: f64,
+        tolerance: f64,
+        iterations: &mut u64,
+    ) -> Result<(), DynamicsError> {
+        let (mut share, mut stage): (f64, f64) = (0.0, 0.125);
+        let mut measure = 1.0;
+        let mut known = vec![0.0; self.loads];
+        let mut last_residual = f64::INFINITY;
+        while share < 1.0 {
+            let next = (share + stage).min(1.0);
+            self.trial.copy_from_slice(&known);
+            let solved = match self.newton(system, next, tolerance, STAGE_ITERATIONS, iterations) {
+                // A jump past the fold lands where the measure has changed sign, or where it is far larger than before.
+                Outcome::Solved => self.measure > 0.0,
+                Outcome::Open(residual) => {
+                    last_residual = residual;
+                    false
+                }
+            };
+            if solved {
+                known.copy_from_slice(&self.trial);
+                (share, measure, stage) = (next, self.measure, 2.0 * stage);
+            } else {
+                stage *= 0.5;
+                if stage < SMALLEST_STAGE {
+                    self.trial.copy_from_slice(&known);
+                    let speed = self.weakest(system, share);
+                    // Near a fold the measure falls like the root of the distance to it.
+                    return Err(if measure < 1e-3 {
+                        DynamicsError::Jammed {
+                            time,
+                            speed,
+                            share,
+                            measure,
+                        }
+                    } else {
+                        DynamicsError::NotSettled {
+                            time,
+                            residual: last_residual,
+                            iterations: *iterations as usize,
+                        }
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Speed of the load that grows fastest at `trial`: the largest entry of the Jacobian's weakest direction.
+    fn weakest(&mut self, system: &System, share: f64) -> usize {
+        self.linearise(system, share);
+        self.jacobian.factor();
+        let mut x = vec![1.0; self.loads];
+        for _ in 0..3 {
+            self.jacobian.solve(&mut x);
+            let size = x.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+            x.iter_mut().for_each(|x| *x /= size);
+        }
+        let (place, _) = x
+            .iter()
+            .enumerate()
+            .fold((0, 0.0), |a, (i, x)| if x.abs() > a.1 { (i, x.abs()) } else { a });
+        system.reaction_loads[place].speed
+    }
+}
+
+impl System {
+    /// Finds the reaction-dependent loads and adds what they do to rates and multipliers.
+    pub(crate) fn solve_reaction_loads(&self, time: f64, v: &[f64], work: &mut Workspace) -> Result<(), DynamicsError> {
+        let state = &mut work.reaction_loop;
+        for (gain, load) in state.gains.iter_mut().zip(&self.reaction_loads) {
+            *gain = load.load.gain(v[load.speed]);
+        }
+        state.forces.fill(0.0);
+        state.trial.fill(0.0);
+        (state.residual, state.measure) = (0.0, 1.0);
+        if state.gains.iter().all(|&gain| gain == 0.0) {
+            return Ok(());
+        }
+        self.responses(work);
+        self.influences(work);
+
+        let mut iterations = 0;
+        let state = &mut work.reaction_loop;
+        let result = match self.reaction_solver {
+            ReactionSolver::Newton { tolerance } => {
+                match state.newton(self, 1.0, tolerance, DIRECT_ITERATIONS, &mut iterations) {
+                    Outcome::Solved if state.measure > 0.0 => Ok(()),
+                    outcome => {
+                        work.counters.reaction_continuations += 1;
+                        let other = matches!(outcome, Outcome::Solved).then_some(state.measure);
+                        match (state.follow(self, time, tolerance, &mut iterations), other) {
+                            (Err(DynamicsError::Jammed { speed, .. }), Some(measure)) => {
+                                Err(DynamicsError::NotUnique { time, speed, measure })
+                            }
+                            (result, _) => result,
+                        }
+                    }
+                }
+            }
+            ReactionSolver::Sweeps { sweeps } => {
+                for _ in 0..sweeps {
+                    state.linearise(self, 1.0);
+                    iterations += 1;
+                    // A sweep takes the loads that the last reactions ask for.
+                    state.trial.iter_mut().zip(&state.step).for_each(|(x, dx)| *x += dx);
+                }
+                state.residual = state.linearise(self, 1.0);
+                Ok(())
+            }
+        };
+        work.counters.reaction_iterations += iterations;
+        result?;
+        self.add_reaction_loads(v, work);
+        Ok(())
+    }
+
+    /// Rates and multipliers for a unit force of each load.
+    fn responses(&self, work: &mut Workspace) {
+        let (m, n) = (self.equations, self.reaction_loads.len());
+        let state = &mut work.reaction_loop;
+        let inverse = match &work.mass {
+            MassFactor::Composite(mass) => mass.inverse_diagonal(),
+            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
+        };
+        for k in 0..n {
+            let lambda = &mut state.multipliers[k * m..(k + 1) * m];
+            if m > 0 {
+                lambda.fill(0.0);
+                work.constraint
+                    .solve_column(&work.columns, work.stride, inverse, 1 + m + k, lambda);
+            }
+            for (i, (row, inverse)) in work.columns.chunks_exact(work.stride).zip(inverse).enumerate() {
+                let closed: f64 = row[1..=m].iter().zip(&*lambda).map(|(w, l)| w * l).sum();
+                state.rates[i * n + k] = (row[1 + m + k] + closed) * inverse;
+            }
+        }
+        match &mut work.mass {
+            MassFactor::Composite(mass) => mass.outward(&mut state.rates, n),
+            MassFactor::Articulated(mass) => {
+                for k in 0..n {
+                    mass.outward(self.tree.nodes(), work.positions.nodes(), &mut state.rates, n, k);
+                }
+            }
+        }
+    }
+
+    /// Reactions without the loads, and their changes for a unit force of each load.
+    fn influences(&self, work: &mut Workspace) {
+        let n = self.reaction_loads.len();
+        let m = self.equations;
+        self.reactions(work);
+        let nodes = self.tree.nodes();
+        for (j, load) in self.reaction_loads.iter().enumerate() {
+            let reaction = in_axes_of(&work.positions.nodes()[load.node], &work.reactions[load.node]);
+            work.reaction_loop.base[j] = reaction;
+        }
+        work.counters.reaction_sweeps += n as u64;
+        for k in 0..n {
+            let state = &mut work.reaction_loop;
+            let positions = work.positions.nodes();
+            for (i, node) in nodes.iter().enumerate().skip(1) {
+                let rate = |speed: usize| state.rates[speed * n + k];
+                let twist = acceleration_step(node, &positions[i], &work.twists[node.parent], rate);
+                work.twists[i] = twist;
+                work.wrenches[i] = inertial_wrench(&work.inertias[i], &twist);
+            }
+            let mut first = k * m;
+            for closure in &self.closures {
+                let lambda = &state.multipliers[first..first + closure.equations()];
+                let (on_predecessor, on_successor) = closure.wrenches(&work.positions, lambda);
+                work.wrenches[closure.predecessor().link.node()] -= on_predecessor;
+                work.wrenches[closure.successor().link.node()] -= on_successor;
+                first += closure.equations();
+            }
+            for (i, node) in nodes.iter().enumerate().skip(1).rev() {
+                if node.parent != 0 {
+                    let total = work.wrenches[i].shifted(&positions[i].arm);
+                    work.wrenches[node.parent] += total;
+                }
+            }
+            for (j, load) in self.reaction_loads.iter().enumerate() {
+                state.influence[j * n + k] = in_axes_of(&positions[load.node], &work.wrenches[load.node]);
+            }
+        }
+    }
+
+    fn add_reaction_loads(&self, v: &[f64], work: &mut Workspace) {
+        let (m, n) = (self.equations, self.reaction_loads.len());
+        let state = &mut work.reaction_loop;
+        state.forces.copy_from_slice(&state.trial);
+        for (rate, row) in work.rates.iter_mut().zip(state.rates.chunks_exact(n)) {
+            *rate += row.iter().zip(&state.forces).map(|(r, f)| r * f).sum::<f64>();
+        }
+        for (k, (force, load)) in state.forces.iter().zip(&self.reaction_loads).enumerate() {
+            for (lambda, unit) in work
+                .constraint
+                .lambda
+                .iter_mut()
+                .zip(&state.multipliers[k * m..(k + 1) * m])
+            {
+                *lambda += unit * force;
+            }
+            work.power += force * v[load.speed];
+        }
+    }
+}

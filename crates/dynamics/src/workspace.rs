@@ -1,0 +1,165 @@
+//! Scratch and results of one evaluation.
+
+use crate::articulated::Articulated;
+use crate::composite::Composite;
+use crate::constraint::Multipliers;
+use crate::reaction_loop::ReactionLoop;
+use crate::symmetric::SpatialInertia;
+use crate::system::{Formulation, System};
+use linkdyn_kinematics::{Accelerations, Freedom, Positions, Twist, Velocities, Wrench};
+
+/// Exact counts of the work done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Evaluations: state to accelerations and multipliers.
+    pub evaluations: u64,
+    /// Inward walks that found joint reactions.
+    pub reaction_sweeps: u64,
+    /// Iterations of the loop reaction - load - acceleration.
+    pub reaction_iterations: u64,
+    /// Times that this loop had to follow its solution from vanishing loads on.
+    pub reaction_continuations: u64,
+    /// Evaluations at which closure equations were redundant.
+    pub redundant: u64,
+}
+
+/// The mass matrix in a form that can be solved with.
+#[derive(Clone, Debug)]
+pub(crate) enum MassFactor {
+    Composite(Composite),
+    Articulated(Articulated),
+}
+
+/// Scratch for [`System::evaluate`] and its results. One a thread; contents mean nothing to the next evaluation.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    pub(crate) positions: Positions,
+    pub(crate) velocities: Velocities,
+    pub(crate) biases: Accelerations,
+    /// Links' own inertias, later composite ones.
+    pub(crate) inertias: Vec<SpatialInertia>,
+    /// Links' own bias wrenches less outside wrenches.
+    pub(crate) own: Vec<Wrench>,
+    /// Accumulated wrenches.
+    pub(crate) wrenches: Vec<Wrench>,
+    pub(crate) mass: MassFactor,
+    /// Speed-major right-hand sides: generalised forces, closure gradient, unit forces of reaction loads.
+    pub(crate) columns: Vec<f64>,
+    pub(crate) stride: usize,
+    /// Generalised forces of loads, kept for their power.
+    pub(crate) generalised: Vec<f64>,
+    pub(crate) constraint: Multipliers,
+    pub(crate) reaction_loop: ReactionLoop,
+    pub(crate) rates: Vec<f64>,
+    pub(crate) reactions: Vec<Wrench>,
+    pub(crate) twists: Vec<Twist>,
+    pub(crate) power: f64,
+    pub(crate) counters: Counters,
+}
+
+/// Branches up to this depth (freedoms on the way to the ground) are cheaper by composite bodies; measured with the bench
+/// `evaluation` on chains of revolute joints.
+const COMPOSITE_DEPTH: usize = 6;
+
+impl Workspace {
+    /// Scratch for `system`.
+    pub fn new(system: &System) -> Self {
+        let tree = &system.tree;
+        let nodes = tree.nodes().len();
+        let depth = tree.joints().iter().map(|(link, _)| tree.path(*link).count()).max();
+        let composite = match system.formulation {
+            Formulation::Recursive => depth.unwrap_or(0) <= COMPOSITE_DEPTH,
+            Formulation::ArticulatedBody => false,
+            Formulation::CompositeBody | Formulation::Lagrange => true,
+        };
+        let mass = if composite {
+            MassFactor::Composite(Composite::new(tree))
+        } else {
+            MassFactor::Articulated(Articulated::new(tree))
+        };
+        let stride = 1 + system.equations + system.reaction_loads.len();
+        Self {
+            positions: Positions::new(tree),
+            velocities: Velocities::new(tree),
+            biases: Accelerations::new(tree),
+            inertias: vec![SpatialInertia::ZERO; nodes],
+            own: vec![Wrench::zero(); nodes],
+            wrenches: vec![Wrench::zero(); nodes],
+            mass,
+            columns: vec![0.0; tree.speeds() * stride],
+            stride,
+            generalised: vec![0.0; tree.speeds()],
+            constraint: Multipliers::new(system.equations),
+            reaction_loop: ReactionLoop::new(system),
+            rates: vec![0.0; tree.speeds()],
+            reactions: vec![Wrench::zero(); nodes],
+            twists: vec![Twist::zero(); nodes],
+            power: 0.0,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Rates of the speeds: the accelerations of the joints \[rad/s^2, m/s^2\].
+    pub fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
+    /// Multipliers of all closures, one after the other; see [`linkdyn_kinematics::Row`] for their meaning.
+    pub fn multipliers(&self) -> &[f64] {
+        self.constraint.multipliers()
+    }
+
+    /// Generalised forces of the reaction-dependent loads, in their order, with the sign in which they act.
+    pub fn reaction_loads(&self) -> &[f64] {
+        self.reaction_loop.forces()
+    }
+
+    /// Relative residual of the loop reaction - load - acceleration at this evaluation.
+    pub fn reaction_residual(&self) -> f64 {
+        self.reaction_loop.residual()
+    }
+
+    /// Measure `det(1 - d load/d load)` of that loop: 1 without feedback, 0 where the mechanism jams.
+    pub fn reaction_measure(&self) -> f64 {
+        self.reaction_loop.measure()
+    }
+
+    /// Power of all loads that are not conservative, reaction-dependent ones included \[W\].
+    pub fn power(&self) -> f64 {
+        self.power
+    }
+
+    /// Number of closure equations that were redundant at this evaluation.
+    pub fn redundant(&self) -> usize {
+        self.constraint.redundant()
+    }
+
+    /// Positions of this evaluation.
+    pub fn positions(&self) -> &Positions {
+        &self.positions
+    }
+
+    /// Velocities of this evaluation.
+    pub fn velocities(&self) -> &Velocities {
+        &self.velocities
+    }
+
+    /// Work done so far.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+}
+
+/// Clears a speed-major array and sets the first column.
+#[inline]
+pub(crate) fn start_columns(columns: &mut [f64], stride: usize, first: &[f64]) {
+    columns.fill(0.0);
+    for (row, force) in columns.chunks_exact_mut(stride).zip(first) {
+        row[0] = *force;
+    }
+}
+
+/// Whether a node moves at all.
+pub(crate) fn moves(freedom: Freedom) -> bool {
+    freedom != Freedom::None
+}

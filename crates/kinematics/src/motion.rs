@@ -1,0 +1,232 @@
+//! Positions, velocities and accelerations of all nodes of a tree, outward from the ground.
+//!
+//! Everything is in **global axes**, each node's quantities at the node's own origin: nothing is rotated on the way out or
+//! in, and far-away links lose no digits. The three phases are three types, so that nothing can ask for velocities before
+//! positions are there.
+
+use crate::joint::Motion;
+use crate::joint::quaternion_rotation;
+use crate::tree::{Freedom, LinkId, Node, Tree};
+use crate::{Pose, Twist};
+use nalgebra::{Matrix3, Vector3};
+
+/// Where a node is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodePosition {
+    /// Axes of the node in global axes (columns).
+    pub rotation: Matrix3<f64>,
+    /// Origin in the global frame \[m\].
+    pub origin: Vector3<f64>,
+    /// From the origin of the node before to this one, global axes \[m\].
+    pub arm: Vector3<f64>,
+    /// Axis of the node's freedom, global axes, unit length (zero without a freedom).
+    pub axis: Vector3<f64>,
+}
+
+/// Positions of all nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Positions(pub(crate) Vec<NodePosition>);
+
+/// Velocities of all nodes: angular, and linear at the node's origin, global axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Velocities(pub(crate) Vec<Twist>);
+
+/// Accelerations of all nodes: angular, and linear at the node's origin, global axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Accelerations(pub(crate) Vec<Twist>);
+
+impl Positions {
+    /// Storage for `tree`, all at the origin.
+    pub fn new(tree: &Tree) -> Self {
+        let start = NodePosition {
+            rotation: Matrix3::identity(),
+            origin: Vector3::zeros(),
+            arm: Vector3::zeros(),
+            axis: Vector3::zeros(),
+        };
+        Self(vec![start; tree.nodes().len()])
+    }
+
+    /// One entry a node, the ground first.
+    #[inline]
+    pub fn nodes(&self) -> &[NodePosition] {
+        &self.0
+    }
+
+    /// Pose of a link in the global frame.
+    pub fn pose(&self, link: LinkId) -> Pose {
+        let node = &self.0[link.node()];
+        Pose {
+            rotation: node.rotation,
+            origin: node.origin,
+        }
+    }
+}
+
+impl Velocities {
+    /// Storage for `tree`, all at rest.
+    pub fn new(tree: &Tree) -> Self {
+        Self(vec![Twist::zero(); tree.nodes().len()])
+    }
+
+    /// One entry a node, the ground first.
+    #[inline]
+    pub fn nodes(&self) -> &[Twist] {
+        &self.0
+    }
+}
+
+impl Accelerations {
+    /// Storage for `tree`, all zero.
+    pub fn new(tree: &Tree) -> Self {
+        Self(vec![Twist::zero(); tree.nodes().len()])
+    }
+
+    /// One entry a node, the ground first.
+    #[inline]
+    pub fn nodes(&self) -> &[Twist] {
+        &self.0
+    }
+}
+
+impl Tree {
+    /// Positions for coordinates `q`.
+    pub fn positions(&self, q: &[f64], positions: &mut Positions) {
+        for (i, node) in self.nodes().iter().enumerate().skip(1) {
+            positions.0[i] = position(node, &positions.0[node.parent], q);
+        }
+    }
+
+    /// Velocities for speeds `v`.
+    pub fn velocities(&self, positions: &Positions, v: &[f64], velocities: &mut Velocities) {
+        for (i, node) in self.nodes().iter().enumerate().skip(1) {
+            velocities.0[i] = velocity(node, &positions.0[i], &velocities.0[node.parent], v);
+        }
+    }
+
+    /// Accelerations for speeds `v` and their rates `rates` on a base that itself accelerates by `base` \[m/s^2\]
+    /// (minus gravity, where the apparent weight is wanted).
+    pub fn accelerations(
+        &self,
+        positions: &Positions,
+        velocities: &Velocities,
+        v: &[f64],
+        rates: &[f64],
+        base: &Vector3<f64>,
+        accelerations: &mut Accelerations,
+    ) {
+        accelerations.0[0].linear = *base;
+        for (i, node) in self.nodes().iter().enumerate().skip(1) {
+            let (here, before) = (&positions.0[i], &accelerations.0[node.parent]);
+            let mut a = bias_acceleration(self.nodes(), i, positions, &velocities.0, before, v);
+            match node.freedom {
+                Freedom::None => {}
+                Freedom::Angular => a.angular += here.axis * rates[node.speed],
+                Freedom::Linear => a.linear += here.axis * rates[node.speed],
+            }
+            accelerations.0[i] = a;
+        }
+    }
+
+    /// The three phases in one walk outward, with the **bias** accelerations: those for vanishing rates of the speeds.
+    #[inline]
+    pub fn sweep(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        base: &Vector3<f64>,
+        positions: &mut Positions,
+        velocities: &mut Velocities,
+        biases: &mut Accelerations,
+    ) {
+        biases.0[0].linear = *base;
+        for (i, node) in self.nodes().iter().enumerate().skip(1) {
+            positions.0[i] = position(node, &positions.0[node.parent], q);
+            velocities.0[i] = velocity(node, &positions.0[i], &velocities.0[node.parent], v);
+            let before = biases.0[node.parent];
+            biases.0[i] = bias_acceleration(self.nodes(), i, positions, &velocities.0, &before, v);
+        }
+    }
+}
+
+#[inline]
+fn position(node: &Node, before: &NodePosition, q: &[f64]) -> NodePosition {
+    let r = &before.rotation;
+    let (rotation, arm, axis) = match &node.motion {
+        Motion::Turn(turn) => {
+            let rotation = r * turn.rotation(q[node.coordinate]);
+            (rotation, r * turn.origin, r * turn.axis)
+        }
+        Motion::Slide(slide) => {
+            let axis = r * slide.axis;
+            (r * slide.rotation, r * slide.origin + axis * q[node.coordinate], axis)
+        }
+        Motion::Ball(offset) => {
+            let turned = quaternion_rotation(&q[node.coordinate..node.coordinate + 4]);
+            let rotation = r * (offset.rotation * turned);
+            (rotation, r * offset.origin, rotation.column(0).into_owned())
+        }
+        Motion::BallNext(k) => (*r, Vector3::zeros(), r.column(*k).into_owned()),
+        Motion::Still(pose) => (r * pose.rotation, r * pose.origin, Vector3::zeros()),
+    };
+    NodePosition {
+        rotation,
+        origin: before.origin + arm,
+        arm,
+        axis,
+    }
+}
+
+#[inline]
+fn velocity(node: &Node, here: &NodePosition, before: &Twist, v: &[f64]) -> Twist {
+    let mut angular = before.angular;
+    let mut linear = before.linear + before.angular.cross(&here.arm);
+    match node.freedom {
+        Freedom::None => {}
+        Freedom::Angular => angular += here.axis * v[node.speed],
+        Freedom::Linear => linear += here.axis * v[node.speed],
+    }
+    Twist { angular, linear }
+}
+
+#[inline]
+fn bias_acceleration(
+    nodes: &[Node],
+    i: usize,
+    positions: &Positions,
+    velocities: &[Twist],
+    before: &Twist,
+    v: &[f64],
+) -> Twist {
+    let (node, here) = (&nodes[i], &positions.0[i]);
+    let w = &velocities[node.parent].angular;
+    let mut angular = before.angular;
+    let mut linear = before.linear + before.angular.cross(&here.arm) + w.cross(&w.cross(&here.arm));
+    match node.freedom {
+        Freedom::None => {}
+        Freedom::Angular => {
+            // The axis turns with whatever carries it: the node before, or for a ball joint its successor.
+            let carrier = match node.motion {
+                Motion::Ball(_) => ball_angular(nodes, i, &here.rotation, w, v, 0),
+                Motion::BallNext(k) => ball_angular(nodes, i, &here.rotation, w, v, k),
+                _ => *w,
+            };
+            angular += carrier.cross(&here.axis) * v[node.speed];
+        }
+        Freedom::Linear => linear += w.cross(&here.axis) * (2.0 * v[node.speed]),
+    }
+    Twist { angular, linear }
+}
+
+/// Angular velocity behind all three freedoms of a ball joint, seen from its k-th node.
+fn ball_angular(
+    nodes: &[Node],
+    i: usize,
+    rotation: &Matrix3<f64>,
+    before: &Vector3<f64>,
+    v: &[f64],
+    k: usize,
+) -> Vector3<f64> {
+    let first = nodes[i].speed - k;
+    (k..3).fold(*before, |w, axis| w + rotation.column(axis) * v[first + axis])
+}

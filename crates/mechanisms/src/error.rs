@@ -1,0 +1,137 @@
+//! What can be wrong with a linkage.
+
+use linkdyn_dynamics::SystemError;
+use linkdyn_friction::ParameterError;
+use linkdyn_kinematics::TreeError;
+use linkdyn_kinematics::assembly::AssemblyError;
+use thiserror::Error;
+
+/// Why a linkage could not be built.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// Two items have the same name.
+    #[error("the name `{name}` is used twice; give each link, joint and coordinate a name of its own")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
+    /// A handle belongs to another linkage.
+    #[error("{what} of `{name}` does not belong to this linkage")]
+    Foreign {
+        /// Kind of the handle.
+        what: &'static str,
+        /// Item that uses it.
+        name: String,
+    },
+    /// A joint has the same link on both sides.
+    #[error("joint `{joint}` connects link `{link}` to itself")]
+    SelfJoint {
+        /// The joint.
+        joint: String,
+        /// The link.
+        link: String,
+    },
+    /// A link is carried by two joints of the tree.
+    #[error("link `{link}` is carried by both joint `{first}` and joint `{second}`; make one of them a cut joint")]
+    CarriedTwice {
+        /// The link.
+        link: String,
+        /// One joint.
+        first: String,
+        /// The other joint.
+        second: String,
+    },
+    /// A link has no way to the ground.
+    #[error("link `{link}` is not connected to the ground by joints that lead from predecessor to successor")]
+    Disconnected {
+        /// The link.
+        link: String,
+    },
+    /// A joint cannot be attached.
+    #[error("joint `{joint}`: {source}")]
+    Joint {
+        /// The joint.
+        joint: String,
+        /// What is wrong.
+        source: TreeError,
+    },
+    /// A mounting frame is not a rigid pose.
+    #[error("the mount of joint `{joint}` on its {side} is not a rigid pose: its rotation is off by {defect:e}")]
+    Mount {
+        /// The joint.
+        joint: String,
+        /// Predecessor or successor.
+        side: &'static str,
+        /// See [`linkdyn_kinematics::Pose::defect`].
+        defect: f64,
+    },
+    /// A load that wants one coordinate stands on a joint with another number.
+    #[error("{what} needs a joint with one coordinate, joint `{joint}` has {coordinates}")]
+    NotOneCoordinate {
+        /// Drive or friction.
+        what: &'static str,
+        /// The joint.
+        joint: String,
+        /// Its number of coordinates.
+        coordinates: usize,
+    },
+    /// The number of names does not fit the joint.
+    #[error("joint `{joint}` has {expected} coordinates, {found} names were given")]
+    CoordinateNames {
+        /// The joint.
+        joint: String,
+        /// Coordinates.
+        expected: usize,
+        /// Names.
+        found: usize,
+    },
+    /// A parameter is out of range.
+    #[error("joint `{joint}`: {parameter} = {value} must be {expected}")]
+    Parameter {
+        /// The joint.
+        joint: String,
+        /// The parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// A friction parameter is out of range.
+    #[error("friction of joint `{joint}`: {source}")]
+    Friction {
+        /// The joint.
+        joint: String,
+        /// What is wrong.
+        source: ParameterError,
+    },
+    /// An inertia is impossible.
+    #[error("link `{link}`: {source}")]
+    Inertia {
+        /// The link.
+        link: String,
+        /// What is wrong.
+        source: linkdyn_dynamics::InertiaError,
+    },
+    /// The equations of motion cannot be set up.
+    #[error(transparent)]
+    System(#[from] SystemError),
+}
+
+/// Why a start could not be made consistent.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StartError {
+    /// A name is not that of a coordinate.
+    #[error("there is no coordinate `{name}`; there are {known}")]
+    UnknownCoordinate {
+        /// The name.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// The loops cannot be closed.
+    #[error("start: {0}")]
+    Assembly(#[from] AssemblyError),
+}

@@ -1,0 +1,143 @@
+//! A built linkage: the equations of motion with names.
+
+use crate::error::StartError;
+use linkdyn_dynamics::System;
+use linkdyn_kinematics::assembly::{self, Assembly, Settings};
+use linkdyn_kinematics::{Attachment, LinkId, Pose};
+use std::sync::Arc;
+
+/// An immutable mechanism; cheap to clone and to share between threads.
+#[derive(Clone, Debug)]
+pub struct Mechanism {
+    pub(crate) system: Arc<System>,
+    pub(crate) links: Vec<NamedLink>,
+    pub(crate) joints: Vec<NamedJoint>,
+    pub(crate) loops: Vec<NamedLoop>,
+    pub(crate) coordinates: Vec<String>,
+    pub(crate) speeds: Vec<String>,
+}
+
+/// A link by name.
+#[derive(Clone, Debug)]
+pub(crate) struct NamedLink {
+    pub name: String,
+    pub frame: Option<Attachment>,
+}
+
+/// A joint of the tree by name.
+#[derive(Clone, Debug)]
+pub(crate) struct NamedJoint {
+    pub name: String,
+    pub link: LinkId,
+    /// Pose of the link's frame in the joint's frame on the successor.
+    pub to_link: Pose,
+    pub speed: usize,
+    pub has_friction: bool,
+}
+
+/// A cut joint by name.
+#[derive(Clone, Debug)]
+pub(crate) struct NamedLoop {
+    pub name: String,
+    pub components: Vec<String>,
+}
+
+/// Coordinates and speeds to start from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Speeds.
+    pub v: Vec<f64>,
+}
+
+/// How a start is given: a guess by names, and which coordinates are held while the loops are closed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Guessed coordinates; those not named start from zero (quaternions from no turn).
+    pub positions: Vec<(String, f64)>,
+    /// Coordinates that keep their guessed value and speed.
+    pub held: Vec<String>,
+    /// Speeds of coordinates; the others follow from the loops.
+    pub speeds: Vec<(String, f64)>,
+}
+
+impl Mechanism {
+    /// The equations of motion.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Names of the coordinates in the order of `q`.
+    pub fn coordinate_names(&self) -> impl Iterator<Item = &str> {
+        self.coordinates.iter().map(String::as_str)
+    }
+
+    /// Names of the joints of the tree, in the order of attachment.
+    pub fn joint_names(&self) -> impl Iterator<Item = &str> {
+        self.joints.iter().map(|joint| joint.name.as_str())
+    }
+
+    /// Names of the cut joints.
+    pub fn loop_names(&self) -> impl Iterator<Item = &str> {
+        self.loops.iter().map(|cut| cut.name.as_str())
+    }
+
+    /// Whether a joint of the mechanism has friction.
+    pub fn has_friction(&self) -> bool {
+        self.joints.iter().any(|joint| joint.has_friction)
+    }
+
+    /// Where a link's frame sits on the tree; `None` for unknown names.
+    pub fn attachment(&self, link: &str) -> Option<Attachment> {
+        self.links.iter().find(|l| l.name == link).and_then(|l| l.frame)
+    }
+
+    /// Closes the loops from a guess; see [`assembly::assemble`].
+    ///
+    /// # Errors
+    /// [`StartError`] for unknown names and where the loops cannot be closed with what is held.
+    pub fn assemble(&self, start: &Start) -> Result<(State, Assembly), StartError> {
+        let tree = self.system.tree();
+        let mut q = tree.neutral();
+        for (name, value) in &start.positions {
+            q[self.index(name)?] = *value;
+        }
+        let mut held = vec![false; tree.speeds()];
+        for name in &start.held {
+            held[self.speed(name)?] = true;
+        }
+        let mut v = vec![0.0; tree.speeds()];
+        let mut given = held.clone();
+        for (name, value) in &start.speeds {
+            let speed = self.speed(name)?;
+            (v[speed], given[speed]) = (*value, true);
+        }
+        let closed = assembly::assemble(tree, self.system.closures(), &q, &held, &Settings::default())?;
+        let v = assembly::consistent_velocities(tree, self.system.closures(), &closed.q, &v, &given)?;
+        let state = State { q: closed.q.clone(), v };
+        Ok((state, closed))
+    }
+
+    fn index(&self, name: &str) -> Result<usize, StartError> {
+        self.coordinate_names()
+            .position(|known| known == name)
+            .ok_or_else(|| StartError::UnknownCoordinate {
+                name: name.to_owned(),
+                known: self.coordinate_names().collect::<Vec<_>>().join(", "),
+            })
+    }
+
+    /// The speed that belongs to a coordinate (for the quaternion of a ball joint: w, x, y, z to its three speeds).
+    fn speed(&self, name: &str) -> Result<usize, StartError> {
+        let index = self.index(name)?;
+        let tree = self.system.tree();
+        for (link, _) in tree.joints() {
+            let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
+            if q.contains(&index) {
+                return Ok(v.start + (index - q.start).saturating_sub(q.len() - v.len()));
+            }
+        }
+        Ok(index)
+    }
+}
