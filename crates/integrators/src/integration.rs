@@ -339,7 +339,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         if let Some(component) = first_non_finite(&self.y_new).or_else(|| first_non_finite(&self.error)) {
             return Err(Refusal::NonFinite { component });
         }
-        if error.is_nan() || error > 1.0 {
+        if self.method.fixed_step().is_none() && (error.is_nan() || error > 1.0) {
             return Err(Refusal::Inaccurate { error });
         }
         self.statistics.projections += 1;

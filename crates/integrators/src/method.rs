@@ -121,7 +121,7 @@ pub trait Method<P: ?Sized> {
         y: &mut [f64],
     ) -> Result<(), EvalError>;
 
-    /// The step of a method of fixed step.
+    /// The step of a method of fixed step; its steps are accepted whatever their error.
     fn fixed_step(&self) -> Option<f64> {
         None
     }
@@ -129,5 +129,62 @@ pub trait Method<P: ?Sized> {
     /// Whether earlier steps enter into the next one, so that a first step must be chosen anew after a restart.
     fn is_multistep(&self) -> bool {
         false
+    }
+}
+
+/// A method chosen at run time.
+impl<P: Ode + ?Sized> Method<P> for Box<dyn Method<P> + '_> {
+    fn order(&self) -> u32 {
+        (**self).order()
+    }
+    fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
+        (**self).prepare(problem)
+    }
+    fn restart(&mut self, problem: &mut Counted<'_, P>, t: f64, y: &[f64]) -> Result<(), EvalError> {
+        (**self).restart(problem, t, y)
+    }
+    fn attempt(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        weights: &Weights,
+        y_new: &mut [f64],
+        error: &mut [f64],
+    ) -> Result<f64, EvalError> {
+        (**self).attempt(problem, step, weights, y_new, error)
+    }
+    fn close(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        y_new: &[f64],
+        projected: bool,
+    ) -> Result<&[f64], EvalError> {
+        (**self).close(problem, step, y_new, projected)
+    }
+    fn accept(&mut self, step: Step<'_>, weights: &Weights, y_new: &[f64]) {
+        (**self).accept(step, weights, y_new);
+    }
+    fn derivative(&self) -> &[f64] {
+        (**self).derivative()
+    }
+    fn next_step(&mut self, h: f64, error: f64) -> f64 {
+        (**self).next_step(h, error)
+    }
+    fn interpolate(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        y_new: &[f64],
+        theta: f64,
+        y: &mut [f64],
+    ) -> Result<(), EvalError> {
+        (**self).interpolate(problem, step, y_new, theta, y)
+    }
+    fn fixed_step(&self) -> Option<f64> {
+        (**self).fixed_step()
+    }
+    fn is_multistep(&self) -> bool {
+        (**self).is_multistep()
     }
 }

@@ -1,0 +1,54 @@
+//! After the first step nothing is allocated. (A target of its own: it replaces the global allocator.)
+
+use linkdyn_integrators::{
+    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Rk4, SecondOrder, Settings,
+};
+
+struct Pendulum;
+
+impl Ode for Pendulum {
+    fn dim(&self) -> usize {
+        2
+    }
+    fn rhs(&mut self, _t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        (dy[0], dy[1]) = (y[1], -y[0].sin());
+        Ok(())
+    }
+    fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, EvalError> {
+        Ok(true)
+    }
+}
+
+impl SecondOrder for Pendulum {
+    fn pairs(&self) -> usize {
+        1
+    }
+}
+
+fn allocations<M: Method<Pendulum>>(method: M) -> u64 {
+    let run = Integration::new(Pendulum, method, 0.0, &[1.0, 0.0], Settings::default()).expect("good settings");
+    let mut run = run.with_stops(&[3.0]).expect("finite");
+    run.advance(100.0).expect("smooth");
+    let mut y = [0.0; 2];
+    let info = allocation_counter::measure(|| {
+        for _ in 0..200 {
+            run.advance(100.0).expect("smooth");
+            let (from, to) = run.last_step();
+            run.interpolate(0.5 * (from + to), &mut y).expect("inside");
+        }
+    });
+    info.count_total
+}
+
+#[test]
+fn no_step_allocates() {
+    assert!(
+        allocation_counter::measure(|| drop(vec![0_u8; 10])).count_total > 0,
+        "the counter counts"
+    );
+    assert_eq!(allocations(Rk4::new(0.01)), 0);
+    assert_eq!(allocations(Newmark::new(0.01, Corrector::Times(2))), 0);
+    assert_eq!(allocations(DormandPrince5::default()), 0);
+    assert_eq!(allocations(Dop853::default()), 0);
+    assert_eq!(allocations(Adams::default()), 0);
+}

@@ -1,0 +1,228 @@
+//! Problems with known solutions, and a wrapper that counts.
+
+use linkdyn_integrators::{EvalError, Integration, Method, Ode, Progress, SecondOrder, Settings, Statistics};
+
+/// x'' + 2 D x' + x = 0 with D = 0.1, and the integral of x.
+pub struct Damped;
+
+impl Damped {
+    pub const START: [f64; 3] = [1.0, 0.0, 0.0];
+
+    pub fn exact(t: f64) -> [f64; 3] {
+        let (d, w) = (0.1, f64::sqrt(0.99));
+        let (decay, c, s) = ((-d * t).exp(), (w * t).cos(), (w * t).sin());
+        let (x, v) = (decay * (c + d / w * s), -decay * s / w);
+        // x = -(v' + 2 D v), integrated from 0.
+        [x, v, -v - 2.0 * d * (x - 1.0)]
+    }
+}
+
+impl Ode for Damped {
+    fn dim(&self) -> usize {
+        3
+    }
+    fn rhs(&mut self, _t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        dy.copy_from_slice(&[y[1], -y[0] - 0.2 * y[1], y[0]]);
+        Ok(())
+    }
+}
+
+impl SecondOrder for Damped {
+    fn pairs(&self) -> usize {
+        1
+    }
+}
+
+/// x'' = 2 x³ − (1 + k²) x, solved by sn(t, k); here k = 1: x = tanh t. And z' = 1 − z² beside it.
+pub struct Kink;
+
+impl Kink {
+    pub const START: [f64; 3] = [0.0, 1.0, 0.0];
+
+    pub fn exact(t: f64) -> [f64; 3] {
+        [t.tanh(), 1.0 / (t.cosh() * t.cosh()), t.tanh()]
+    }
+}
+
+impl Ode for Kink {
+    fn dim(&self) -> usize {
+        3
+    }
+    fn rhs(&mut self, _t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        dy.copy_from_slice(&[y[1], 2.0 * y[0].powi(3) - 2.0 * y[0], 1.0 - y[2] * y[2]]);
+        Ok(())
+    }
+}
+
+impl SecondOrder for Kink {
+    fn pairs(&self) -> usize {
+        1
+    }
+}
+
+/// x'' = 6 x² with x = 1 / (1 + t)², and z' = −2 t z², z = 1 / (1 + t²): with time in the right-hand side.
+pub struct Rational;
+
+impl Rational {
+    pub const START: [f64; 3] = [1.0, -2.0, 1.0];
+
+    pub fn exact(t: f64) -> [f64; 3] {
+        [(1.0 + t).powi(-2), -2.0 * (1.0 + t).powi(-3), 1.0 / (1.0 + t * t)]
+    }
+}
+
+impl Ode for Rational {
+    fn dim(&self) -> usize {
+        3
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        dy.copy_from_slice(&[y[1], 6.0 * y[0] * y[0], -2.0 * t * y[2] * y[2]]);
+        Ok(())
+    }
+}
+
+impl SecondOrder for Rational {
+    fn pairs(&self) -> usize {
+        1
+    }
+}
+
+/// Seven stars in a plane (Hairer, Nørsett, Wanner I, II.10).
+pub struct Pleiades;
+
+impl Pleiades {
+    pub const START: [f64; 28] = [
+        3.0, 3.0, -1.0, -3.0, 2.0, -2.0, 2.0, 3.0, -3.0, 2.0, 0.0, 0.0, -4.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.75, -1.5,
+        0.0, 0.0, 0.0, -1.25, 1.0, 0.0, 0.0,
+    ];
+    /// At t = 3, from the test set for IVP solvers.
+    pub const END: [f64; 28] = [
+        0.3706139143970502,
+        3.237284092057233,
+        -3.222559032418324,
+        0.659709145577531,
+        0.3425581707156584,
+        1.562172101400631,
+        -0.7003092922212495,
+        -3.943437585517392,
+        -3.27138097397255,
+        5.225081843456543,
+        -2.59061243497747,
+        1.198213693392275,
+        -0.2429682344935824,
+        1.09144924042898,
+        3.417003806314313,
+        1.354584501625501,
+        -2.590065597810775,
+        2.025053734714242,
+        -1.155815100160448,
+        -0.8072988170223021,
+        0.595239635420871,
+        -3.74124496123401,
+        0.377345968575063,
+        0.9386858869551074,
+        0.3667922227200571,
+        -0.347404635380849,
+        2.344915448180937,
+        -1.947020434263292,
+    ];
+}
+
+impl Ode for Pleiades {
+    fn dim(&self) -> usize {
+        28
+    }
+    fn rhs(&mut self, _t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        let (place, rate) = y.split_at(14);
+        dy[..14].copy_from_slice(rate);
+        for i in 0..7 {
+            let (mut ax, mut ay) = (0.0, 0.0);
+            for j in (0..7).filter(|&j| j != i) {
+                let (dx, dy) = (place[j] - place[i], place[7 + j] - place[7 + i]);
+                let pull = (j + 1) as f64 / (dx * dx + dy * dy).powf(1.5);
+                ax += pull * dx;
+                ay += pull * dy;
+            }
+            (dy[14 + i], dy[21 + i]) = (ax, ay);
+        }
+        Ok(())
+    }
+}
+
+/// Any right-hand side given as a function of t and y.
+pub struct Function<F>(pub usize, pub F);
+
+impl<F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), EvalError>> Ode for Function<F> {
+    fn dim(&self) -> usize {
+        self.0
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        (self.1)(t, y, dy)
+    }
+}
+
+/// Counts what really is called.
+#[derive(Default)]
+pub struct Counting<P> {
+    pub problem: P,
+    pub evaluations: u64,
+    pub projections: u64,
+    /// Whether `project` claims to have changed the state.
+    pub claim: bool,
+}
+
+impl<P> Counting<P> {
+    pub fn new(problem: P) -> Self {
+        Self {
+            problem,
+            evaluations: 0,
+            projections: 0,
+            claim: false,
+        }
+    }
+}
+
+impl<P: Ode> Ode for Counting<P> {
+    fn dim(&self) -> usize {
+        self.problem.dim()
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        self.evaluations += 1;
+        self.problem.rhs(t, y, dy)
+    }
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
+        self.projections += 1;
+        self.problem.project(t, y)?;
+        Ok(self.claim)
+    }
+}
+
+impl<P: SecondOrder> SecondOrder for Counting<P> {
+    fn pairs(&self) -> usize {
+        self.problem.pairs()
+    }
+}
+
+/// Runs to the end.
+pub fn finish<P: Ode, M: Method<P>>(run: &mut Integration<P, M>, end: f64) -> Vec<f64> {
+    while !matches!(run.advance(end).expect("the run succeeds"), Progress::Done { .. }) {}
+    run.state().1.to_vec()
+}
+
+/// State at `end` with these settings.
+pub fn solve<P: Ode, M: Method<P>>(
+    problem: P,
+    method: M,
+    y0: &[f64],
+    end: f64,
+    settings: Settings,
+) -> (Vec<f64>, Statistics) {
+    let mut run = Integration::new(problem, method, 0.0, y0, settings).expect("good settings");
+    let y = finish(&mut run, end);
+    (y, run.statistics())
+}
+
+/// Largest difference.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,124 @@
+//! What a tolerance buys.
+
+use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Integration, Method, Ode, Settings};
+
+use crate::problems::{Damped, Function, Kink, Pleiades, distance, finish, solve};
+
+/// Two digits more of tolerance must buy at least one digit of accuracy, down to rounding.
+fn responds<P: Ode, M: Method<P>>(
+    problem: impl Fn() -> P,
+    method: impl Fn() -> M,
+    y0: &[f64],
+    (end, exact): (f64, &[f64]),
+    amplification: f64,
+) {
+    let mut last = f64::INFINITY;
+    for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+        let (y, _) = solve(problem(), method(), y0, end, Settings::tolerances(tolerance, tolerance));
+        let error = distance(&y, exact);
+        assert!(
+            error < 0.1 * last || error < 1e-12 * amplification,
+            "{tolerance:e}: {error:e} after {last:e}"
+        );
+        assert!(error < 100.0 * amplification * tolerance, "{tolerance:e}: {error:e}");
+        last = error;
+    }
+}
+
+fn all_respond<M>(method: impl Fn() -> M)
+where
+    M: Method<Damped> + Method<Kink>,
+{
+    responds(|| Damped, &method, &Damped::START, (20.0, &Damped::exact(20.0)), 1.0);
+    responds(|| Kink, &method, &Kink::START, (1.5, &Kink::exact(1.5)), 10.0);
+}
+
+#[test]
+fn error_follows_tolerance() {
+    all_respond(DormandPrince5::default);
+    all_respond(Dop853::default);
+    all_respond(Adams::default);
+}
+
+#[test]
+fn pleiades() {
+    fn error<M: Method<Pleiades>>(method: M, tolerance: f64) -> f64 {
+        let settings = Settings::tolerances(tolerance, tolerance);
+        distance(
+            &solve(Pleiades, method, &Pleiades::START, 3.0, settings).0,
+            &Pleiades::END,
+        )
+    }
+    for (name, error, bound) in [
+        ("Dop853", error(Dop853::default(), 1e-12), 1e-9),
+        ("DormandPrince5", error(DormandPrince5::default(), 1e-10), 1e-6),
+        ("Adams", error(Adams::default(), 1e-12), 1e-7),
+    ] {
+        assert!(error < bound, "{name}: {error:e}");
+    }
+}
+
+/// The work of the runs, so that a change that costs work shows.
+#[test]
+fn work() {
+    fn work<M: Method<Pleiades>>(method: M) -> u64 {
+        solve(
+            Pleiades,
+            method,
+            &Pleiades::START,
+            3.0,
+            Settings::tolerances(1e-10, 1e-10),
+        )
+        .1
+        .evaluations
+    }
+    assert!(work(Dop853::default()) < 3100);
+    assert!(work(Adams::default()) < 1600);
+}
+
+#[test]
+fn each_component_has_its_own_tolerance() {
+    let settings = Settings::tolerances(vec![1e-10, 1e-10, 1e-3], vec![1e-12, 1e-12, f64::INFINITY]);
+    let (y, free) = solve(Damped, Dop853::default(), &Damped::START, 20.0, settings);
+    assert!(distance(&y[..2], &Damped::exact(20.0)[..2]) < 1e-8);
+    // A component that is hard to integrate but not controlled costs no step.
+    let rough = |_: f64, y: &[f64], dy: &mut [f64]| {
+        dy.copy_from_slice(&[y[1], -y[0] - 0.2 * y[1], (1e3 * y[0]).sin()]);
+        Ok(())
+    };
+    let tolerances = |third: f64| Settings::tolerances(1e-10, vec![1e-12, 1e-12, third]);
+    let (_, rough_free) = solve(
+        Function(3, rough),
+        Dop853::default(),
+        &Damped::START,
+        20.0,
+        tolerances(f64::INFINITY),
+    );
+    let (_, rough_held) = solve(
+        Function(3, rough),
+        Dop853::default(),
+        &Damped::START,
+        20.0,
+        tolerances(1e-12),
+    );
+    assert!(rough_free.evaluations <= free.evaluations * 11 / 10);
+    assert!(rough_held.evaluations > 4 * rough_free.evaluations);
+}
+
+#[test]
+fn backward_and_back() {
+    fn there_and_back<M: Method<Damped>>(method: M) {
+        let settings = Settings::tolerances(1e-11, 1e-12);
+        let mut run = Integration::new(Damped, method, 0.0, &Damped::START, settings).expect("good settings");
+        assert!(distance(&finish(&mut run, 5.0), &Damped::exact(5.0)) < 1e-9);
+        assert!(distance(&finish(&mut run, -2.0), &Damped::exact(-2.0)) < 1e-9);
+        let (from, to) = run.last_step();
+        assert!(from > to);
+        let mut y = [0.0; 3];
+        run.interpolate(0.5 * (from + to), &mut y).expect("inside");
+        assert!(distance(&y, &Damped::exact(0.5 * (from + to))) < 1e-9);
+    }
+    there_and_back(DormandPrince5::default());
+    there_and_back(Dop853::default());
+    there_and_back(Adams::default());
+}
