@@ -19,8 +19,10 @@
 //! ```
 
 mod draw;
+mod layout;
 mod raster;
 mod simplify;
+mod strokes;
 mod ticks;
 
 pub use raster::svg_to_png;

@@ -61,7 +61,7 @@ fn log_and_phase() -> Figure {
         .panel(
             Panel::new("path of the journal", Axis::linear("x (m)"), Axis::linear("y (m)"))
                 .equal_axes()
-                .series(Series::line("clearance", 5, circle(1e-3)))
+                .series(Series::line("c̄, ψ̇₁₁ (clearance)", 5, circle(1e-3)))
                 .series(Series::line("journal", 0, spiral)),
         )
 }
@@ -100,6 +100,28 @@ fn svg_is_well_formed_with_awkward_text() {
     );
     let png = figure.to_png(1.0).expect("parsed as XML");
     assert_eq!(&png[1..4], b"PNG");
+}
+
+#[test]
+fn a_legend_in_a_panel_keeps_clear_of_the_curves() {
+    let place = |f: fn(f64) -> f64| {
+        let panel = one(curve(101, f)).series(Series::line("other", 1, curve(101, f)));
+        let svg = Figure::new("").legend(Legend::Panels).panel(panel).to_svg().unwrap();
+        let ground = svg
+            .lines()
+            .find(|l| l.contains("fill-opacity"))
+            .expect("a legend")
+            .to_owned();
+        let of = |name: &str| -> f64 {
+            let rest = ground.split(&format!(" {name}=\"")).nth(1).expect("an attribute");
+            rest.split('"').next().and_then(|x| x.parse().ok()).expect("a number")
+        };
+        (of("x") > 500.0, of("y") > 100.0)
+    };
+    // Right and at the bottom?
+    assert_eq!(place(|t| -t), (true, false));
+    assert_eq!(place(|t| t), (false, false));
+    assert_eq!(place(|t| (t - 2.5).abs()), (true, true));
 }
 
 #[test]

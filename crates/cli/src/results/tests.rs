@@ -104,6 +104,32 @@ fn an_earlier_run_stays_until_the_commit_and_when_the_new_one_is_dropped() {
     assert_eq!(names(place.path()), ["r"]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn at_no_time_is_there_no_run() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let place = tempdir().unwrap();
+    let target = place.path().join("r");
+    write(&target, 0.0).unwrap();
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let reader = scope.spawn(|| {
+            let mut looks = 0;
+            while !done.load(Ordering::SeqCst) {
+                assert!(target.join("run.json").exists() && target.join("states.csv").exists());
+                looks += 1;
+            }
+            looks
+        });
+        for i in 1..=50 {
+            write(&target, f64::from(i)).unwrap();
+        }
+        done.store(true, Ordering::SeqCst);
+        assert!(reader.join().unwrap() > 0);
+    });
+    assert_eq!(value_in(&target), 50.0);
+}
+
 #[test]
 fn an_empty_folder_is_taken() {
     let place = tempdir().unwrap();
