@@ -38,7 +38,8 @@ pub struct Adams {
     /// Φₖ(n + 1) of the predicted state, then scratch.
     top: Vec<f64>,
     f_new: Vec<f64>,
-    scratch: Vec<f64>,
+    /// Φₖ₋₁(n + 1) and Φₖ₋₂(n + 1) of the predicted state.
+    lower: [Vec<f64>; 2],
     /// Norms of the error had this step been made with order k, k − 1, k − 2.
     errors: [f64; 3],
     /// Norm of the error expected at `next_k` with an unchanged step.
@@ -62,7 +63,7 @@ impl Default for Adams {
             g: [0.0; MOST + 2],
             top: Vec::new(),
             f_new: Vec::new(),
-            scratch: Vec::new(),
+            lower: [Vec::new(), Vec::new()],
             errors: [0.0; 3],
             next_error: 1.0,
             defect: Vec::new(),
@@ -107,9 +108,9 @@ impl Adams {
         add(y, s, &terms[..count], &self.differences);
     }
 
-    /// Norm of h (g_{j+1} − g_j) times the difference in `scratch`: the error of order j + 1.
-    fn error_norm(&mut self, h: f64, j: usize, y: &[f64], y_new: &[f64], weights: &Weights) -> f64 {
-        (h * (self.g[j + 1] - self.g[j])).abs() * weights.norm(y, y_new, &self.scratch)
+    /// Error of a step of order k, from the mean square of its Φₖ: h (gₖ − gₖ₋₁) Φₖ.
+    fn error_norm(&self, h: f64, k: usize, mean_square: f64) -> f64 {
+        (h * (self.g[k] - self.g[k - 1])).abs() * mean_square.sqrt()
     }
 
     /// Order of the next step after an accepted one, and the error to expect of it (Shampine and Gordon, chapter 7).
@@ -126,9 +127,8 @@ impl Adams {
             return (k, error);
         }
         let n = self.f_new.len();
-        self.scratch
-            .copy_from_slice(&self.differences[(k + 1) * n..(k + 2) * n]);
-        let higher = self.error_norm(step.h, k, step.y, y_new, weights);
+        let [square] = weights.mean_squares(step.y, y_new, [&self.differences[(k + 1) * n..(k + 2) * n]]);
+        let higher = self.error_norm(step.h, k + 1, square);
         match k {
             1 if higher < 0.5 * error => (2, higher),
             2.. if lower <= error.min(higher) => (k - 1, lower),
@@ -146,7 +146,8 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
     fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
         let n = problem.dim();
         self.differences = vec![0.0; n * (MOST + 1)];
-        for vector in [&mut self.top, &mut self.f_new, &mut self.scratch, &mut self.defect] {
+        let [lower, lowest] = &mut self.lower;
+        for vector in [&mut self.top, &mut self.f_new, &mut self.defect, lower, lowest] {
             *vector = vec![0.0; n];
         }
         Ok(())
@@ -165,7 +166,7 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
         y_new: &mut [f64],
         error: &mut [f64],
     ) -> Result<f64, EvalError> {
-        let (n, Step { t, h, y }) = (y_new.len(), step);
+        let Step { t, h, y } = step;
         self.k = self.next_k;
         let k = self.k;
         self.find_coefficients(h);
@@ -186,18 +187,23 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
         add(error, h, &[(0, g[k] - g[k - 1])], &self.top);
 
         // Φₖ₋₁(n + 1) = Φₖ(n + 1) + βₖ₋₁ Φₖ₋₁(n) and so on.
-        self.errors = [weights.norm(y, y_new, error), 0.0, 0.0];
-        self.scratch.copy_from_slice(&self.top);
-        for m in 1..k.min(3) {
-            let j = k - m;
-            add(
-                &mut self.scratch,
-                1.0,
-                &[(j, self.beta[j])],
-                &self.differences[..(j + 1) * n],
-            );
-            self.errors[m] = self.error_norm(h, j - 1, y, y_new, weights);
+        let [lower, lowest] = &mut self.lower;
+        lower.copy_from_slice(&self.top);
+        if k > 1 {
+            add(lower, 1.0, &[(k - 1, beta[k - 1])], &self.differences);
         }
+        lowest.copy_from_slice(lower);
+        if k > 2 {
+            add(lowest, 1.0, &[(k - 2, beta[k - 2])], &self.differences);
+        }
+        let squares = weights.mean_squares(y, y_new, [&self.top, lower, lowest]);
+        self.errors = std::array::from_fn(|m| {
+            if m < k {
+                self.error_norm(h, k - m, squares[m])
+            } else {
+                0.0
+            }
+        });
         Ok(self.errors[0])
     }
 

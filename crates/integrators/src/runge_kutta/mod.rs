@@ -3,6 +3,8 @@
 mod classical;
 mod dop853;
 mod dormand_prince5;
+#[cfg(test)]
+mod tests;
 
 use std::marker::PhantomData;
 
