@@ -29,8 +29,10 @@ pub struct Adams {
     starting: bool,
     /// Attempts refused since the last step.
     failures: u32,
-    /// tₙ − tₙ₋ⱼ.
+    /// tₙ − tₙ₋ⱼ, and 1 / (tₙ − tₙ₋ⱼ) here and after the attempt, j > 0.
     back: [f64; MOST + 2],
+    inverse: [f64; MOST + 2],
+    inverse_new: [f64; MOST + 2],
     /// Φⱼ(n), one vector after the other.
     differences: Vec<f64>,
     beta: [f64; MOST + 2],
@@ -58,6 +60,8 @@ impl Default for Adams {
             starting: true,
             failures: 0,
             back: [0.0; MOST + 2],
+            inverse: [0.0; MOST + 2],
+            inverse_new: [0.0; MOST + 2],
             differences: Vec::new(),
             beta: [0.0; MOST + 2],
             g: [0.0; MOST + 2],
@@ -75,17 +79,20 @@ impl Default for Adams {
 impl Adams {
     /// βⱼ and gⱼ for a step h with order k (Hairer, Nørsett, Wanner I, eq. III.5.9 and III.5.11-13).
     fn find_coefficients(&mut self, h: f64) {
+        let count = self.depth.min(self.k + 1);
+        for j in 1..=count {
+            self.inverse_new[j] = 1.0 / (h + self.back[j - 1]);
+        }
         self.beta[0] = 1.0;
         for j in 1..self.depth.min(self.k + 1) {
-            self.beta[j] = self.beta[j - 1] * (h + self.back[j - 1]) / self.back[j];
+            self.beta[j] = self.beta[j - 1] * (h + self.back[j - 1]) * self.inverse[j];
         }
-        let count = self.depth.min(self.k + 1);
-        // c[q] is c_{j, q + 1}.
+        // c[q] is c_{j, q + 1}, of which q <= count - j is needed; a loop of constant length is faster than one of the right length.
         let mut c: [f64; MOST + 3] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
         self.g[0] = c[0];
         for j in 1..=count {
-            let ratio = h / (h + self.back[j - 1]);
-            for q in 0..=count - j {
+            let ratio = h * self.inverse_new[j];
+            for q in 0..MOST + 2 {
                 c[q] -= ratio * c[q + 1];
             }
             self.g[j] = c[0];
@@ -101,7 +108,7 @@ impl Adams {
         terms[0] = (0, i[0]);
         for (j, term) in terms.iter_mut().enumerate().take(count).skip(1) {
             for q in 0..count - j {
-                i[q] = ((s + self.back[j - 1]) * i[q] - s * i[q + 1]) / self.back[j];
+                i[q] = ((s + self.back[j - 1]) * i[q] - s * i[q + 1]) * self.inverse[j];
             }
             *term = (j, i[0]);
         }
@@ -236,6 +243,7 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
         for j in (1..self.depth).rev() {
             self.back[j] = self.back[j - 1] + step.h;
         }
+        self.inverse = self.inverse_new;
         self.failures = 0;
         self.defect_ready = false;
         (self.next_k, self.next_error) = self.choose_order(step, weights, y_new);
