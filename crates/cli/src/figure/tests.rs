@@ -61,7 +61,7 @@ fn log_and_phase() -> Figure {
         .panel(
             Panel::new("path of the journal", Axis::linear("x (m)"), Axis::linear("y (m)"))
                 .equal_axes()
-                .series(Series::line("c̄, ψ̇₁₁ (clearance)", 5, circle(1e-3)))
+                .series(Series::line("clearance", 5, circle(1e-3)))
                 .series(Series::line("journal", 0, spiral)),
         )
 }
