@@ -7,6 +7,8 @@ use thiserror::Error;
 
 /// Mass, centre of mass and inertia matrix of a rigid link, in a frame of the link.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct RigidInertia {
     /// Mass \[kg\].
     pub mass: f64,

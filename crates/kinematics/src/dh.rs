@@ -10,6 +10,8 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 
 /// The order in which the four elementary motions follow one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Convention {
     /// `T = Rz(theta) Tz(d) Tx(a) Rx(alpha)`.
     Classical,
@@ -19,6 +21,8 @@ pub enum Convention {
 
 /// One row of a Denavit-Hartenberg table.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Row {
     /// Turn about z \[rad\].
     pub theta: f64,
@@ -32,6 +36,8 @@ pub struct Row {
 
 /// Which of the two numbers of a row the joint changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Variable {
     /// Revolute joint: `theta`.
     Theta,

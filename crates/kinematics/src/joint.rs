@@ -1,7 +1,7 @@
 //! Joints, and the elementary steps they are made of.
 //!
 //! A joint lets its successor move in a linear subspace of twists. Here each joint is a short chain of **steps** with one
-//! freedom each (a turn about an axis, a slide along one); the links between the steps of one joint have no mass. The
+//! freedom each (a turn about an axis, a slide along one); between the steps of one joint there is nothing. The
 //! recursions then know two kinds of freedom and no kinds of joints, and a new joint is a new list of steps.
 
 use crate::Pose;
@@ -9,6 +9,8 @@ use nalgebra::{Matrix3, Unit, Vector3};
 
 /// A joint between two links. Axes are unit vectors in the joint's frame on the predecessor.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
 pub enum Joint {
     /// No freedom.
     Fixed,

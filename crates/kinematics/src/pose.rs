@@ -7,6 +7,8 @@ use std::ops::Mul;
 ///
 /// Poses compose so that neighbouring letters cancel: `x_ac = x_ab * x_bc`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Pose {
     /// Rotation `R_ab` (3 x 3, its columns are the axes of `b` in `a`) \[-\].
     pub rotation: Matrix3<f64>,
