@@ -7,6 +7,7 @@ pub mod dh;
 mod jacobian;
 mod joint;
 mod motion;
+pub mod notation;
 mod pose;
 mod spatial;
 mod tree;
