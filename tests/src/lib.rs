@@ -1,1 +1,10 @@
-//! Shared fixtures of the tests.
+//! Shared fixtures of the tests: descriptions of machines that can be edited before they are built, strategies that draw them
+//! at random, loads, known linkages, and small numerical tools.
+
+mod blueprint;
+pub mod linkages;
+pub mod loads;
+pub mod numbers;
+pub mod strategies;
+
+pub use blueprint::{Blueprint, Cut, Machine, Part};

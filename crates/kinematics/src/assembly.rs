@@ -1,8 +1,11 @@
 //! Assembly: positions that close the loops and velocities that keep them closed.
 
+mod least_squares;
+
 use crate::closure::Closure;
 use crate::motion::Positions;
 use crate::tree::Tree;
+use least_squares::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
@@ -130,8 +133,6 @@ pub enum AssemblyError {
     },
 }
 
-/// Singular values below this share of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-9;
 /// Longest Newton step \[rad, m\]: keeps a far guess from being thrown onto another branch.
 const LONGEST_STEP: f64 = 0.3;
 
@@ -180,6 +181,7 @@ pub fn assemble(
     let m = equations(closures);
     let mut q = guess.to_vec();
     tree.normalise(&mut q);
+    check("guess with unit quaternions", &q, tree.coordinates())?;
     let mut positions = Positions::new(tree);
     let evaluate = |q: &[f64], positions: &mut Positions| {
         tree.positions(q, positions);
@@ -194,7 +196,7 @@ pub fn assemble(
     let mut length = 1.0;
     while phi.amax() > settings.tolerance && iterations < settings.iterations && length > 1e-6 {
         iterations += 1;
-        let step = solve_least(&free_gradient(tree, closures, &positions, &free), &phi).0;
+        let step = SingularValues::new(&free_gradient(tree, closures, &positions, &free)).solve(&phi);
         length = (LONGEST_STEP / step.amax()).min(1.0);
         loop {
             let mut displacement = vec![0.0; tree.speeds()];
@@ -219,7 +221,7 @@ pub fn assemble(
     }
 
     let g = free_gradient(tree, closures, &positions, &free);
-    let rank = rank(&g);
+    let rank = SingularValues::new(&g).rank();
     let residual = if m == 0 { 0.0 } else { phi.amax() };
     // A residual that Newton cannot lower and that is rounding of the lengths involved is closed.
     let rounding = 16.0 * f64::EPSILON * positions.0.iter().map(|n| n.origin.amax()).fold(1.0, f64::max);
@@ -275,11 +277,11 @@ pub fn consistent_velocities(
     let mut positions = Positions::new(tree);
     tree.positions(q, &mut positions);
     let g = gradient(tree, closures, &positions);
-    let g_free = free_gradient(tree, closures, &positions, &free);
+    let factors = SingularValues::new(&free_gradient(tree, closures, &positions, &free));
     let mut rate = &g * DVector::from_column_slice(&v);
     let scale = v.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     for _ in 0..2 {
-        let step = solve_least(&g_free, &rate).0;
+        let step = factors.solve(&rate);
         for (k, &i) in free.iter().enumerate() {
             v[i] -= step[k];
         }
@@ -291,7 +293,7 @@ pub fn consistent_velocities(
             rate: rate.amax(),
             closure,
             equation,
-            rank: rank(&g_free),
+            rank: factors.rank(),
             equations: m,
         });
     }
@@ -333,31 +335,11 @@ fn free_gradient(tree: &Tree, closures: &[Closure], positions: &Positions, free:
     gradient(tree, closures, positions).select_columns(free)
 }
 
-/// Shortest least-squares solution of `g x = b`, and the rank of `g`.
-fn solve_least(g: &DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, usize) {
-    if g.is_empty() || !g.iter().all(|x| x.is_finite()) {
-        return (DVector::zeros(g.ncols()), 0);
-    }
-    let svd = g.clone().svd(true, true);
-    let threshold = RANK_TOLERANCE * svd.singular_values.max();
-    let x = svd.solve(b, threshold).unwrap_or_else(|_| DVector::zeros(g.ncols()));
-    (x, svd.rank(threshold))
-}
-
-fn rank(g: &DMatrix<f64>) -> usize {
-    if g.is_empty() || !g.iter().all(|x| x.is_finite()) {
-        return 0;
-    }
-    let values = g.singular_values();
-    let largest = values.max();
-    values.iter().filter(|&&s| s > RANK_TOLERANCE * largest).count()
-}
-
 fn branch(g: &DMatrix<f64>) -> Branch {
     if g.nrows() != g.ncols() || g.is_empty() {
         return Branch::Undefined;
     }
-    if rank(g) < g.nrows() {
+    if SingularValues::new(g).rank() < g.nrows() {
         return Branch::Singular;
     }
     if g.determinant() > 0.0 {

@@ -1,0 +1,102 @@
+//! Loads of the simplest kinds.
+
+use linkdyn_dynamics::{Capacity, Load, Loads, Motion, Reaction, ReactionLoad};
+use linkdyn_kinematics::{LinkId, Wrench};
+
+/// Constant generalised forces and constant wrenches.
+#[derive(Clone, Debug)]
+pub struct Applied {
+    /// One a speed \[N m, N\].
+    pub drives: Vec<f64>,
+    /// Wrenches on links at their origins, global axes.
+    pub wrenches: Vec<(LinkId, Wrench)>,
+}
+
+impl Load for Applied {
+    fn apply(&self, _motion: &Motion<'_>, loads: &mut Loads<'_>) {
+        for (speed, force) in self.drives.iter().enumerate() {
+            loads.add(speed, *force);
+        }
+        for (link, wrench) in &self.wrenches {
+            loads.add_wrench(*link, *wrench);
+        }
+    }
+}
+
+/// A linear spring on one coordinate that is also its speed's integral.
+#[derive(Clone, Copy, Debug)]
+pub struct Spring {
+    /// Coordinate.
+    pub coordinate: usize,
+    /// Its speed.
+    pub speed: usize,
+    /// Stiffness \[N m/rad, N/m\].
+    pub stiffness: f64,
+}
+
+impl Load for Spring {
+    fn apply(&self, motion: &Motion<'_>, loads: &mut Loads<'_>) {
+        loads.add(self.speed, -self.stiffness * motion.q[self.coordinate]);
+    }
+
+    fn is_conservative(&self) -> bool {
+        true
+    }
+
+    fn potential_energy(&self, motion: &Motion<'_>) -> f64 {
+        0.5 * self.stiffness * motion.q[self.coordinate].powi(2)
+    }
+}
+
+/// A smooth load on a joint that grows with the joint's reaction: gain `scale tanh(speed)`, capacity
+/// `sqrt(floor^2 + |force|^2 + |torque|^2/arm^2)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Rough {
+    /// Factor of the gain \[m or -\].
+    pub scale: f64,
+    /// Smallest capacity \[N\].
+    pub floor: f64,
+    /// Length that turns torque to force \[m\].
+    pub arm: f64,
+}
+
+impl ReactionLoad for Rough {
+    fn gain(&self, speed: f64) -> f64 {
+        self.scale * speed.tanh()
+    }
+
+    fn capacity(&self, reaction: &Reaction) -> Capacity {
+        let weight = 1.0 / (self.arm * self.arm);
+        let square = self.floor * self.floor + reaction.force.norm_squared() + weight * reaction.torque.norm_squared();
+        let value = square.sqrt();
+        Capacity {
+            value,
+            gradient: Wrench {
+                torque: reaction.torque * (weight / value),
+                force: reaction.force / value,
+            },
+        }
+    }
+}
+
+/// A load that is linear in the reaction: gain 1 at any speed, capacity `constant + force . direction`.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear {
+    /// Capacity without reaction \[N\].
+    pub constant: f64,
+    /// Weights of the reaction's force and torque.
+    pub weights: Wrench,
+}
+
+impl ReactionLoad for Linear {
+    fn gain(&self, _speed: f64) -> f64 {
+        1.0
+    }
+
+    fn capacity(&self, reaction: &Reaction) -> Capacity {
+        Capacity {
+            value: self.constant + self.weights.force.dot(&reaction.force) + self.weights.torque.dot(&reaction.torque),
+            gradient: self.weights,
+        }
+    }
+}
