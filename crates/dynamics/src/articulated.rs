@@ -1,6 +1,7 @@
 //! Articulated-body recursion \[Featherstone 2008, ch. 7\]: the inverse of the mass matrix of a tree as a product of one
 //! inward and one outward walk, at a cost linear in the number of links.
 
+use crate::columns::Columns;
 use crate::composite::along;
 use crate::symmetric::{SpatialInertia, Symmetric};
 use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Twist, Wrench};
@@ -104,8 +105,7 @@ impl Articulated {
         positions: &[NodePosition],
         bodies: &[SpatialInertia],
         wrenches: &[Wrench],
-        columns: &mut [f64],
-        stride: usize,
+        columns: &mut Columns,
     ) -> Result<(), (usize, f64)> {
         for (articulated, body) in self.inertias.iter_mut().zip(bodies) {
             *articulated = ArticulatedInertia::rigid(body);
@@ -133,7 +133,7 @@ impl Articulated {
                 let inverse = 1.0 / pivot;
                 self.pivots[i] = Pivot { u, inverse };
                 self.inverse_diagonal[node.speed] = inverse;
-                let force = &mut columns[node.speed * stride];
+                let force = columns.at_mut(node.speed, 0);
                 *force -= along(node, here, &wrench);
                 if node.parent != 0 {
                     inertia.release(&u, inverse);
@@ -155,20 +155,13 @@ impl Articulated {
     }
 
     /// Takes a column of generalised forces inward.
-    pub fn inward(
-        &mut self,
-        nodes: &[Node],
-        positions: &[NodePosition],
-        columns: &mut [f64],
-        stride: usize,
-        column: usize,
-    ) {
+    pub fn inward(&mut self, nodes: &[Node], positions: &[NodePosition], columns: &mut Columns, column: usize) {
         self.wrenches.fill(Wrench::zero());
         for i in (1..nodes.len()).rev() {
             let (node, here) = (&nodes[i], &positions[i]);
             let mut wrench = self.wrenches[i];
             if node.freedom != Freedom::None {
-                let force = &mut columns[node.speed * stride + column];
+                let force = columns.at_mut(node.speed, column);
                 *force -= along(node, here, &wrench);
                 let pivot = &self.pivots[i];
                 let share = *force * pivot.inverse;
@@ -183,14 +176,7 @@ impl Articulated {
 
     /// Takes a column, already divided by the pivots, outward to rates of the speeds.
     #[inline]
-    pub fn outward(
-        &mut self,
-        nodes: &[Node],
-        positions: &[NodePosition],
-        columns: &mut [f64],
-        stride: usize,
-        column: usize,
-    ) {
+    pub fn outward(&mut self, nodes: &[Node], positions: &[NodePosition], columns: &mut Columns, column: usize) {
         for i in 1..nodes.len() {
             let (node, here) = (&nodes[i], &positions[i]);
             let before = self.twists[node.parent];
@@ -200,7 +186,7 @@ impl Articulated {
             };
             if node.freedom != Freedom::None {
                 let pivot = &self.pivots[i];
-                let rate = &mut columns[node.speed * stride + column];
+                let rate = columns.at_mut(node.speed, column);
                 if node.parent != 0 {
                     *rate -= pivot.u.power(&twist) * pivot.inverse;
                 }

@@ -1,6 +1,7 @@
 //! Composite-body recursion \[Featherstone 2008, ch. 6\]: the mass matrix of a tree, factored as `M = L^T D L` without fill-in
 //! \[Featherstone 2008, ch. 6.5\]. Cheapest for short branches; the cost grows with the square of their depth.
 
+use crate::columns::Columns;
 use crate::symmetric::SpatialInertia;
 use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Wrench};
 
@@ -51,8 +52,7 @@ impl Composite {
         positions: &[NodePosition],
         bodies: &[SpatialInertia],
         wrenches: &mut [Wrench],
-        columns: &mut [f64],
-        stride: usize,
+        columns: &mut Columns,
     ) {
         let n = self.speeds;
         self.inertias.copy_from_slice(bodies);
@@ -60,7 +60,7 @@ impl Composite {
             let (node, here) = (&nodes[i], &positions[i]);
             let (inertia, wrench) = (self.inertias[i], wrenches[i]);
             if node.freedom != Freedom::None {
-                columns[node.speed * stride] -= along(node, here, &wrench);
+                *columns.at_mut(node.speed, 0) -= along(node, here, &wrench);
                 let mut force = match node.freedom {
                     Freedom::Linear => Wrench {
                         torque: inertia.moment.cross(&here.axis),
@@ -127,19 +127,14 @@ impl Composite {
         &self.inverse_diagonal
     }
 
-    /// `L^-T` on all columns of a speed-major array with `stride` columns.
+    /// `L^-T` on all columns.
     #[inline]
-    pub fn inward(&self, columns: &mut [f64], stride: usize) {
+    pub fn inward(&self, columns: &mut Columns) {
         let n = self.speeds;
         for i in (0..n).rev() {
-            let (head, tail) = columns.split_at_mut(i * stride);
-            let source = &tail[..stride];
             let mut j = self.below[i];
             while j != NONE {
-                let l = self.matrix[i * n + j];
-                for (x, y) in head[j * stride..(j + 1) * stride].iter_mut().zip(source) {
-                    *x -= l * y;
-                }
+                columns.subtract(j, self.matrix[i * n + j], i);
                 j = self.below[j];
             }
         }
@@ -147,17 +142,12 @@ impl Composite {
 
     /// `L^-1` on all columns.
     #[inline]
-    pub fn outward(&self, columns: &mut [f64], stride: usize) {
+    pub fn outward(&self, columns: &mut Columns) {
         let n = self.speeds;
         for i in 0..n {
-            let (head, tail) = columns.split_at_mut(i * stride);
-            let target = &mut tail[..stride];
             let mut j = self.below[i];
             while j != NONE {
-                let l = self.matrix[i * n + j];
-                for (x, y) in target.iter_mut().zip(&head[j * stride..(j + 1) * stride]) {
-                    *x -= l * y;
-                }
+                columns.subtract(i, self.matrix[i * n + j], j);
                 j = self.below[j];
             }
         }

@@ -3,10 +3,10 @@
 use crate::composite::along;
 use crate::error::DynamicsError;
 use crate::lagrange;
-use crate::load::{Loads, Motion, power};
+use crate::load::{Loads, Motion};
 use crate::symmetric::SpatialInertia;
 use crate::system::{Formulation, System};
-use crate::workspace::{MassFactor, Workspace, moves, start_columns};
+use crate::workspace::{MassFactor, Workspace, moves};
 use linkdyn_kinematics::{Twist, Wrench};
 
 impl System {
@@ -43,44 +43,39 @@ impl System {
         self.tree
             .sweep(q, v, &base, &mut work.positions, &mut work.velocities, &mut work.biases);
         self.apply_loads(t, q, v, work);
-        start_columns(&mut work.columns, work.stride, &work.generalised);
+        work.columns.clear();
+        for (speed, force) in work.generalised.iter().enumerate() {
+            *work.columns.at_mut(speed, 0) = *force;
+        }
         if self.formulation == Formulation::Lagrange {
             self.take_outside_wrenches(work);
         }
         self.own_wrenches(work);
 
         let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
-        let stride = work.stride;
         let singular = |(speed, pivot)| DynamicsError::SingularMass { time: t, speed, pivot };
         match &mut work.mass {
             MassFactor::Composite(mass) => {
                 if self.formulation == Formulation::Lagrange {
                     let equations = lagrange::equations(self, q, v);
-                    equations.write(mass.matrix_mut(), &mut work.columns, stride, &mut work.constraint.gamma);
+                    equations.write(mass.matrix_mut(), &mut work.columns, &mut work.constraint.gamma);
                 } else {
                     work.wrenches.copy_from_slice(&work.own);
-                    mass.assemble(
-                        nodes,
-                        positions,
-                        &work.inertias,
-                        &mut work.wrenches,
-                        &mut work.columns,
-                        stride,
-                    );
+                    mass.assemble(nodes, positions, &work.inertias, &mut work.wrenches, &mut work.columns);
                 }
                 mass.factor().map_err(singular)?;
                 self.closure_columns(work);
                 if let MassFactor::Composite(mass) = &work.mass {
-                    mass.inward(&mut work.columns, stride);
+                    mass.inward(&mut work.columns);
                 }
             }
             MassFactor::Articulated(mass) => {
-                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns, stride)
+                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns)
                     .map_err(singular)?;
                 self.closure_columns(work);
                 if let MassFactor::Articulated(mass) = &mut work.mass {
-                    for column in 1..stride {
-                        mass.inward(nodes, work.positions.nodes(), &mut work.columns, stride, column);
+                    for column in 1..1 + self.equations + self.reaction_loads.len() {
+                        mass.inward(nodes, work.positions.nodes(), &mut work.columns, column);
                     }
                 }
             }
@@ -107,14 +102,11 @@ impl System {
         let mut loads = Loads {
             generalised: &mut work.generalised,
             counter: &mut work.own,
+            on_links: false,
         };
         let (active, conservative) = self.loads.split_at(self.active_loads);
         active.iter().for_each(|load| load.apply(&motion, &mut loads));
-        work.power = power(loads.generalised, loads.counter, v, &work.velocities);
-        let mut loads = Loads {
-            generalised: &mut work.generalised,
-            counter: &mut work.own,
-        };
+        work.power = loads.power(&motion);
         conservative.iter().for_each(|load| load.apply(&motion, &mut loads));
     }
 
@@ -141,7 +133,7 @@ impl System {
             let here = &work.positions.nodes()[i];
             let wrench = work.wrenches[i];
             if moves(node.freedom) {
-                work.columns[node.speed * work.stride] -= along(node, here, &wrench);
+                *work.columns.at_mut(node.speed, 0) -= along(node, here, &wrench);
             }
             work.wrenches[node.parent] += wrench.shifted(&here.arm);
         }
@@ -156,7 +148,8 @@ impl System {
         for closure in &self.closures {
             let range = first..first + closure.equations();
             if !lagrange {
-                closure.gradient(&self.tree, positions, &mut work.columns, work.stride, 1 + first);
+                let stride = work.columns.stride();
+                closure.gradient(&self.tree, positions, work.columns.flat_mut(), stride, 1 + first);
                 closure.bias(
                     positions,
                     velocities,
@@ -181,41 +174,42 @@ impl System {
             first += closure.equations();
         }
         for (k, load) in self.reaction_loads.iter().enumerate() {
-            work.columns[load.speed * work.stride + 1 + self.equations + k] = 1.0;
+            *work.columns.at_mut(load.speed, 1 + self.equations + k) = 1.0;
         }
     }
 
-    /// Multipliers and rates without the reaction loads.
+    /// Multipliers and rates for all right-hand sides; those for the generalised forces become the result.
     #[inline]
     fn solve(&self, work: &mut Workspace) {
-        let m = self.equations;
-        let inverse = match &work.mass {
-            MassFactor::Composite(mass) => mass.inverse_diagonal(),
-            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
-        };
-        if m > 0 {
-            work.constraint.factor(&work.columns, work.stride, inverse);
-            work.constraint.solve_forces(&work.columns, work.stride, inverse);
+        let inverse = work.mass.inverse_diagonal();
+        if self.equations > 0 {
+            work.constraint.factor(&work.columns, inverse);
         }
-        for ((rate, row), inverse) in work
-            .rates
-            .iter_mut()
-            .zip(work.columns.chunks_exact(work.stride))
-            .zip(inverse)
-        {
-            let closed: f64 = row[1..=m].iter().zip(&work.constraint.lambda).map(|(w, l)| w * l).sum();
-            *rate = (row[0] + closed) * inverse;
+        let units = 1 + self.equations..1 + self.equations + self.reaction_loads.len();
+        for (k, column) in units.enumerate() {
+            work.constraint
+                .solve_column(column, false, &work.columns, inverse, &mut work.solutions);
+            work.reaction_loop
+                .set_unit_multipliers(k, work.constraint.multipliers());
         }
+        work.constraint
+            .solve_column(0, true, &work.columns, inverse, &mut work.solutions);
         self.outward(work);
+        for (speed, rate) in work.rates.iter_mut().enumerate() {
+            *rate = work.solutions.at(speed, 0);
+        }
     }
 
-    /// Takes `work.rates`, divided by the pivots, outward.
+    /// Takes the solutions, divided by the pivots, outward.
     #[inline]
     pub(crate) fn outward(&self, work: &mut Workspace) {
         match &mut work.mass {
-            MassFactor::Composite(mass) => mass.outward(&mut work.rates, 1),
+            MassFactor::Composite(mass) => mass.outward(&mut work.solutions),
             MassFactor::Articulated(mass) => {
-                mass.outward(self.tree.nodes(), work.positions.nodes(), &mut work.rates, 1, 0);
+                let first_unit = 1 + self.equations;
+                for column in (0..1).chain(first_unit..first_unit + self.reaction_loads.len()) {
+                    mass.outward(self.tree.nodes(), work.positions.nodes(), &mut work.solutions, column);
+                }
             }
         }
     }

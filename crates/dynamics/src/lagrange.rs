@@ -3,6 +3,7 @@
 //! An independent route to everything that the recursions find, from 4 x 4 transforms and their derivatives alone. It
 //! allocates and costs the fourth power of the depth.
 
+use crate::columns::Columns;
 use crate::system::System;
 use linkdyn_kinematics::{Attachment, LinkId, Row, Transforms};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3, Vector4};
@@ -72,15 +73,15 @@ impl LagrangeEquations {
     }
 
     /// Hands the equations to the solver of the recursive form.
-    pub(crate) fn write(&self, matrix: &mut [f64], columns: &mut [f64], stride: usize, gamma: &mut [f64]) {
+    pub(crate) fn write(&self, matrix: &mut [f64], columns: &mut Columns, gamma: &mut [f64]) {
         let n = self.mass.nrows();
         for i in 0..n {
             for j in 0..=i {
                 matrix[i * n + j] = self.mass[(i, j)];
             }
-            columns[i * stride] -= self.bias[i];
+            *columns.at_mut(i, 0) -= self.bias[i];
             for k in 0..self.gradient.nrows() {
-                columns[i * stride + 1 + k] = self.gradient[(k, i)];
+                *columns.at_mut(i, 1 + k) = self.gradient[(k, i)];
             }
         }
         gamma.copy_from_slice(self.gamma.as_slice());

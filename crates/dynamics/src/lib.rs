@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod articulated;
+mod columns;
 mod composite;
 mod constraint;
 mod energy;

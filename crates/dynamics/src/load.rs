@@ -24,6 +24,8 @@ pub struct Loads<'a> {
     pub(crate) generalised: &'a mut [f64],
     /// Minus the outside wrenches, a node each, at the node's origin.
     pub(crate) counter: &'a mut [Wrench],
+    /// Whether any wrench was added.
+    pub(crate) on_links: bool,
 }
 
 impl Loads<'_> {
@@ -37,6 +39,23 @@ impl Loads<'_> {
     #[inline]
     pub fn add_wrench(&mut self, link: LinkId, at_origin: Wrench) {
         self.counter[link.node()] -= at_origin;
+        self.on_links = true;
+    }
+
+    /// Power of all loads added so far \[W\].
+    #[inline]
+    pub(crate) fn power(&self, motion: &Motion<'_>) -> f64 {
+        let mut power: f64 = self.generalised.iter().zip(motion.v).map(|(f, v)| f * v).sum();
+        if self.on_links {
+            let twists = motion.velocities.nodes();
+            power -= self
+                .counter
+                .iter()
+                .zip(twists)
+                .map(|(wrench, twist)| wrench.power(twist))
+                .sum::<f64>();
+        }
+        power
     }
 }
 
@@ -83,16 +102,4 @@ pub trait ReactionLoad: Debug + Send + Sync {
 
     /// Capacity for a reaction.
     fn capacity(&self, reaction: &Reaction) -> Capacity;
-}
-
-/// Power of generalised forces and (counter-)wrenches \[W\].
-#[inline]
-pub(crate) fn power(generalised: &[f64], counter: &[Wrench], v: &[f64], velocities: &Velocities) -> f64 {
-    let joints: f64 = generalised.iter().zip(v).map(|(f, v)| f * v).sum();
-    let links: f64 = counter
-        .iter()
-        .zip(velocities.nodes())
-        .map(|(w, twist)| w.power(twist))
-        .sum();
-    joints - links
 }

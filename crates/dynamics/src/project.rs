@@ -100,48 +100,39 @@ impl System {
         if std::mem::replace(factored, true) {
             return;
         }
-        let stride = work.stride;
-        work.columns.fill(0.0);
+        work.columns.clear();
+        let stride = work.columns.stride();
         let mut first = 0;
         for closure in &self.closures {
-            closure.gradient(&self.tree, &work.positions, &mut work.columns, stride, 1 + first);
+            closure.gradient(&self.tree, &work.positions, work.columns.flat_mut(), stride, 1 + first);
             first += closure.equations();
         }
-        let inverse = match &mut work.mass {
-            MassFactor::Composite(mass) => {
-                mass.inward(&mut work.columns, stride);
-                mass.inverse_diagonal()
-            }
+        match &mut work.mass {
+            MassFactor::Composite(mass) => mass.inward(&mut work.columns),
             MassFactor::Articulated(mass) => {
                 for column in 1..=self.equations {
-                    mass.inward(
-                        self.tree.nodes(),
-                        work.positions.nodes(),
-                        &mut work.columns,
-                        stride,
-                        column,
-                    );
+                    mass.inward(self.tree.nodes(), work.positions.nodes(), &mut work.columns, column);
                 }
-                mass.inverse_diagonal()
             }
-        };
-        work.constraint.factor(&work.columns, stride, inverse);
+        }
+        work.constraint.factor(&work.columns, work.mass.inverse_diagonal());
     }
 
     /// The step `-M^-1 G^T S^-1 r` for the residual or rate `r` in `lambda`, left in `rates`.
     fn closure_step(&self, work: &mut Workspace) {
         let m = self.equations;
-        work.constraint.solve_lambda();
-        let inverse = match &work.mass {
-            MassFactor::Composite(mass) => mass.inverse_diagonal(),
-            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
-        };
-        let rows = work.columns.chunks_exact(work.stride).zip(inverse);
-        for (rate, (row, inverse)) in work.rates.iter_mut().zip(rows) {
-            let sum: f64 = row[1..=m].iter().zip(&work.constraint.lambda).map(|(w, l)| w * l).sum();
-            *rate = -sum * inverse;
+        work.constraint.solve();
+        work.solutions.clear();
+        let inverse = work.mass.inverse_diagonal();
+        for (i, (row, inverse)) in work.columns.rows().zip(inverse).enumerate() {
+            let w = row[1..=m].iter();
+            let sum: f64 = w.zip(&work.constraint.lambda).map(|(w, l)| w * l).sum();
+            *work.solutions.at_mut(i, 0) = -sum * inverse;
         }
         self.outward(work);
+        for (i, rate) in work.rates.iter_mut().enumerate() {
+            *rate = work.solutions.at(i, 0);
+        }
     }
 }
 

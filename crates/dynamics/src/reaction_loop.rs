@@ -16,7 +16,7 @@ use crate::linear::Lu;
 use crate::load::Reaction;
 use crate::reaction::{acceleration_step, in_axes_of};
 use crate::system::{ReactionSolver, System};
-use crate::workspace::{MassFactor, Workspace};
+use crate::workspace::Workspace;
 use linkdyn_kinematics::Wrench;
 
 /// Newton steps before the solution is followed from vanishing loads on.
@@ -38,8 +38,6 @@ pub(crate) struct ReactionLoop {
     base: Vec<Reaction>,
     /// Change of reaction `j` for unit force `k`, at `j * loads + k`.
     influence: Vec<Reaction>,
-    /// Rates of the speeds for unit force `k`, at `speed * loads + k`.
-    rates: Vec<f64>,
     /// Multipliers for unit force `k`, at `k * equations + row`.
     multipliers: Vec<f64>,
     jacobian: Lu,
@@ -65,13 +63,19 @@ impl ReactionLoop {
             gains: vec![0.0; loads],
             base: vec![Wrench::zero(); loads],
             influence: vec![Wrench::zero(); loads * loads],
-            rates: vec![0.0; loads * system.tree.speeds()],
             multipliers: vec![0.0; loads * system.equations],
             jacobian: Lu::new(loads),
             step: vec![0.0; loads],
             residual: 0.0,
             measure: 1.0,
         }
+    }
+
+    /// Keeps the multipliers for a unit force of load `k`.
+    #[inline]
+    pub fn set_unit_multipliers(&mut self, k: usize, multipliers: &[f64]) {
+        let m = multipliers.len();
+        self.multipliers[k * m..(k + 1) * m].copy_from_slice(multipliers);
     }
 
     pub fn forces(&self) -> &[f64] {
@@ -224,7 +228,6 @@ impl System {
         if state.gains.iter().all(|&gain| gain == 0.0) {
             return Ok(());
         }
-        self.responses(work);
         self.influences(work);
 
         let mut iterations = 0;
@@ -262,36 +265,6 @@ impl System {
         Ok(())
     }
 
-    /// Rates and multipliers for a unit force of each load.
-    fn responses(&self, work: &mut Workspace) {
-        let (m, n) = (self.equations, self.reaction_loads.len());
-        let state = &mut work.reaction_loop;
-        let inverse = match &work.mass {
-            MassFactor::Composite(mass) => mass.inverse_diagonal(),
-            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
-        };
-        for k in 0..n {
-            let lambda = &mut state.multipliers[k * m..(k + 1) * m];
-            if m > 0 {
-                lambda.fill(0.0);
-                work.constraint
-                    .solve_column(&work.columns, work.stride, inverse, 1 + m + k, lambda);
-            }
-            for (i, (row, inverse)) in work.columns.chunks_exact(work.stride).zip(inverse).enumerate() {
-                let closed: f64 = row[1..=m].iter().zip(&*lambda).map(|(w, l)| w * l).sum();
-                state.rates[i * n + k] = (row[1 + m + k] + closed) * inverse;
-            }
-        }
-        match &mut work.mass {
-            MassFactor::Composite(mass) => mass.outward(&mut state.rates, n),
-            MassFactor::Articulated(mass) => {
-                for k in 0..n {
-                    mass.outward(self.tree.nodes(), work.positions.nodes(), &mut state.rates, n, k);
-                }
-            }
-        }
-    }
-
     /// Reactions without the loads, and their changes for a unit force of each load.
     fn influences(&self, work: &mut Workspace) {
         let n = self.reaction_loads.len();
@@ -307,7 +280,7 @@ impl System {
             let state = &mut work.reaction_loop;
             let positions = work.positions.nodes();
             for (i, node) in nodes.iter().enumerate().skip(1) {
-                let rate = |speed: usize| state.rates[speed * n + k];
+                let rate = |speed: usize| work.solutions.at(speed, 1 + m + k);
                 let twist = acceleration_step(node, &positions[i], &work.twists[node.parent], rate);
                 work.twists[i] = twist;
                 work.wrenches[i] = inertial_wrench(&work.inertias[i], &twist);
@@ -332,12 +305,17 @@ impl System {
         }
     }
 
+    /// Adds what the loads found do to rates, multipliers and power.
     fn add_reaction_loads(&self, v: &[f64], work: &mut Workspace) {
-        let (m, n) = (self.equations, self.reaction_loads.len());
+        let m = self.equations;
         let state = &mut work.reaction_loop;
         state.forces.copy_from_slice(&state.trial);
-        for (rate, row) in work.rates.iter_mut().zip(state.rates.chunks_exact(n)) {
-            *rate += row.iter().zip(&state.forces).map(|(r, f)| r * f).sum::<f64>();
+        for (rate, row) in work.rates.iter_mut().zip(work.solutions.rows()) {
+            *rate += row[1 + m..]
+                .iter()
+                .zip(&state.forces)
+                .map(|(unit, force)| unit * force)
+                .sum::<f64>();
         }
         for (k, (force, load)) in state.forces.iter().zip(&self.reaction_loads).enumerate() {
             for (lambda, unit) in work

@@ -1,6 +1,7 @@
 //! Scratch and results of one evaluation.
 
 use crate::articulated::Articulated;
+use crate::columns::Columns;
 use crate::composite::Composite;
 use crate::constraint::Multipliers;
 use crate::reaction_loop::ReactionLoop;
@@ -30,6 +31,17 @@ pub(crate) enum MassFactor {
     Articulated(Articulated),
 }
 
+impl MassFactor {
+    /// Inverse pivots `D^-1`, one a speed.
+    #[inline]
+    pub fn inverse_diagonal(&self) -> &[f64] {
+        match self {
+            MassFactor::Composite(mass) => mass.inverse_diagonal(),
+            MassFactor::Articulated(mass) => mass.inverse_diagonal(),
+        }
+    }
+}
+
 /// Scratch for [`System::evaluate`] and its results. One a thread; contents mean nothing to the next evaluation.
 #[derive(Clone, Debug)]
 pub struct Workspace {
@@ -43,9 +55,10 @@ pub struct Workspace {
     /// Accumulated wrenches.
     pub(crate) wrenches: Vec<Wrench>,
     pub(crate) mass: MassFactor,
-    /// Speed-major right-hand sides: generalised forces, closure gradient, unit forces of reaction loads.
-    pub(crate) columns: Vec<f64>,
-    pub(crate) stride: usize,
+    /// Right-hand sides, a row each speed: generalised forces, closure gradient `G^T`, unit forces of reaction loads.
+    pub(crate) columns: Columns,
+    /// Rates of the speeds for each right-hand side (those of the closure gradient mean nothing).
+    pub(crate) solutions: Columns,
     /// Generalised forces of loads, kept for their power.
     pub(crate) generalised: Vec<f64>,
     pub(crate) constraint: Multipliers,
@@ -77,7 +90,7 @@ impl Workspace {
         } else {
             MassFactor::Articulated(Articulated::new(tree))
         };
-        let stride = 1 + system.equations + system.reaction_loads.len();
+        let columns = 1 + system.equations + system.reaction_loads.len();
         Self {
             positions: Positions::new(tree),
             velocities: Velocities::new(tree),
@@ -86,8 +99,8 @@ impl Workspace {
             own: vec![Wrench::zero(); nodes],
             wrenches: vec![Wrench::zero(); nodes],
             mass,
-            columns: vec![0.0; tree.speeds() * stride],
-            stride,
+            columns: Columns::new(tree.speeds(), columns),
+            solutions: Columns::new(tree.speeds(), columns),
             generalised: vec![0.0; tree.speeds()],
             constraint: Multipliers::new(system.equations),
             reaction_loop: ReactionLoop::new(system),
@@ -147,15 +160,6 @@ impl Workspace {
     /// Work done so far.
     pub fn counters(&self) -> Counters {
         self.counters
-    }
-}
-
-/// Clears a speed-major array and sets the first column.
-#[inline]
-pub(crate) fn start_columns(columns: &mut [f64], stride: usize, first: &[f64]) {
-    columns.fill(0.0);
-    for (row, force) in columns.chunks_exact_mut(stride).zip(first) {
-        row[0] = *force;
     }
 }
 

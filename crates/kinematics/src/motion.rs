@@ -93,7 +93,7 @@ impl Tree {
     /// Positions for coordinates `q`.
     pub fn positions(&self, q: &[f64], positions: &mut Positions) {
         for (i, node) in self.nodes().iter().enumerate().skip(1) {
-            positions.0[i] = position(node, &positions.0[node.parent], q);
+            place(node, i, q, &mut positions.0);
         }
     }
 
@@ -117,8 +117,8 @@ impl Tree {
     ) {
         accelerations.0[0].linear = *base;
         for (i, node) in self.nodes().iter().enumerate().skip(1) {
-            let (here, before) = (&positions.0[i], &accelerations.0[node.parent]);
-            let mut a = bias_acceleration(self.nodes(), i, positions, &velocities.0, before, v);
+            let here = &positions.0[i];
+            let mut a = self.bias_acceleration(i, positions, velocities, accelerations, v);
             match node.freedom {
                 Freedom::None => {}
                 Freedom::Angular => a.angular += here.axis * rates[node.speed],
@@ -141,40 +141,103 @@ impl Tree {
     ) {
         biases.0[0].linear = *base;
         for (i, node) in self.nodes().iter().enumerate().skip(1) {
-            positions.0[i] = position(node, &positions.0[node.parent], q);
+            place(node, i, q, &mut positions.0);
             velocities.0[i] = velocity(node, &positions.0[i], &velocities.0[node.parent], v);
-            let before = biases.0[node.parent];
-            biases.0[i] = bias_acceleration(self.nodes(), i, positions, &velocities.0, &before, v);
+            biases.0[i] = self.bias_acceleration(i, positions, velocities, biases, v);
         }
+    }
+
+    /// Acceleration of node `i` for a vanishing rate of its own speed, from that of the node before.
+    #[inline]
+    fn bias_acceleration(
+        &self,
+        i: usize,
+        positions: &Positions,
+        velocities: &Velocities,
+        accelerations: &Accelerations,
+        v: &[f64],
+    ) -> Twist {
+        let (node, here) = (&self.nodes()[i], &positions.0[i]);
+        let before = &accelerations.0[node.parent];
+        // On the ground nothing turns but what a ball joint turns itself.
+        if node.parent == 0 && !node.is_ball() {
+            return *before;
+        }
+        let w = &velocities.0[node.parent].angular;
+        let mut angular = before.angular;
+        let mut linear = before.linear + before.angular.cross(&here.arm) + w.cross(&w.cross(&here.arm));
+        match node.freedom {
+            Freedom::None => {}
+            Freedom::Angular => {
+                // The axis turns with whatever carries it: the node before, or for a ball joint its successor.
+                let carrier = match node.motion {
+                    Motion::Ball(_) => self.ball_angular(i, &here.rotation, w, v, 0),
+                    Motion::BallNext(k) => self.ball_angular(i, &here.rotation, w, v, k),
+                    _ => *w,
+                };
+                angular += carrier.cross(&here.axis) * v[node.speed];
+            }
+            Freedom::Linear => linear += w.cross(&here.axis) * (2.0 * v[node.speed]),
+        }
+        Twist { angular, linear }
+    }
+
+    /// Angular velocity behind all three freedoms of a ball joint, seen from its k-th node.
+    fn ball_angular(
+        &self,
+        i: usize,
+        rotation: &Matrix3<f64>,
+        before: &Vector3<f64>,
+        v: &[f64],
+        k: usize,
+    ) -> Vector3<f64> {
+        let first = self.nodes()[i].speed - k;
+        (k..3).fold(*before, |w, axis| w + rotation.column(axis) * v[first + axis])
     }
 }
 
+/// Places node `i` on the node before.
 #[inline]
-fn position(node: &Node, before: &NodePosition, q: &[f64]) -> NodePosition {
+fn place(node: &Node, i: usize, q: &[f64], positions: &mut [NodePosition]) {
+    let (before, rest) = positions.split_at_mut(i);
+    let here = &mut rest[0];
+    let before = &before[node.parent];
     let r = &before.rotation;
-    let (rotation, arm, axis) = match &node.motion {
+    match &node.motion {
+        // On the ground there is nothing to multiply with.
+        Motion::Turn(turn) if node.parent == 0 => {
+            here.rotation = turn.rotation(q[node.coordinate]);
+            here.arm = turn.origin;
+            here.axis = turn.axis;
+        }
         Motion::Turn(turn) => {
-            let rotation = r * turn.rotation(q[node.coordinate]);
-            (rotation, r * turn.origin, r * turn.axis)
+            here.rotation = r * turn.rotation(q[node.coordinate]);
+            here.arm = r * turn.origin;
+            here.axis = r * turn.axis;
         }
         Motion::Slide(slide) => {
-            let axis = r * slide.axis;
-            (r * slide.rotation, r * slide.origin + axis * q[node.coordinate], axis)
+            here.axis = r * slide.axis;
+            here.rotation = r * slide.rotation;
+            here.arm = r * slide.origin + here.axis * q[node.coordinate];
         }
         Motion::Ball(offset) => {
             let turned = quaternion_rotation(&q[node.coordinate..node.coordinate + 4]);
-            let rotation = r * (offset.rotation * turned);
-            (rotation, r * offset.origin, rotation.column(0).into_owned())
+            here.rotation = r * (offset.rotation * turned);
+            here.arm = r * offset.origin;
+            here.axis = here.rotation.column(0).into_owned();
         }
-        Motion::BallNext(k) => (*r, Vector3::zeros(), r.column(*k).into_owned()),
-        Motion::Still(pose) => (r * pose.rotation, r * pose.origin, Vector3::zeros()),
-    };
-    NodePosition {
-        rotation,
-        origin: before.origin + arm,
-        arm,
-        axis,
+        Motion::BallNext(k) => {
+            here.rotation = *r;
+            here.arm = Vector3::zeros();
+            here.axis = r.column(*k).into_owned();
+        }
+        Motion::Still(pose) => {
+            here.rotation = r * pose.rotation;
+            here.arm = r * pose.origin;
+            here.axis = Vector3::zeros();
+        }
     }
+    here.origin = before.origin + here.arm;
 }
 
 #[inline]
@@ -187,46 +250,4 @@ fn velocity(node: &Node, here: &NodePosition, before: &Twist, v: &[f64]) -> Twis
         Freedom::Linear => linear += here.axis * v[node.speed],
     }
     Twist { angular, linear }
-}
-
-#[inline]
-fn bias_acceleration(
-    nodes: &[Node],
-    i: usize,
-    positions: &Positions,
-    velocities: &[Twist],
-    before: &Twist,
-    v: &[f64],
-) -> Twist {
-    let (node, here) = (&nodes[i], &positions.0[i]);
-    let w = &velocities[node.parent].angular;
-    let mut angular = before.angular;
-    let mut linear = before.linear + before.angular.cross(&here.arm) + w.cross(&w.cross(&here.arm));
-    match node.freedom {
-        Freedom::None => {}
-        Freedom::Angular => {
-            // The axis turns with whatever carries it: the node before, or for a ball joint its successor.
-            let carrier = match node.motion {
-                Motion::Ball(_) => ball_angular(nodes, i, &here.rotation, w, v, 0),
-                Motion::BallNext(k) => ball_angular(nodes, i, &here.rotation, w, v, k),
-                _ => *w,
-            };
-            angular += carrier.cross(&here.axis) * v[node.speed];
-        }
-        Freedom::Linear => linear += w.cross(&here.axis) * (2.0 * v[node.speed]),
-    }
-    Twist { angular, linear }
-}
-
-/// Angular velocity behind all three freedoms of a ball joint, seen from its k-th node.
-fn ball_angular(
-    nodes: &[Node],
-    i: usize,
-    rotation: &Matrix3<f64>,
-    before: &Vector3<f64>,
-    v: &[f64],
-    k: usize,
-) -> Vector3<f64> {
-    let first = nodes[i].speed - k;
-    (k..3).fold(*before, |w, axis| w + rotation.column(axis) * v[first + axis])
 }

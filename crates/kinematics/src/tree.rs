@@ -29,7 +29,7 @@ pub enum Freedom {
     Linear,
 }
 
-/// A frame of the tree: a link, or a massless step between the freedoms of one joint.
+/// A frame of the tree: a link, or a step between the freedoms of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
     /// Index of the node before; always smaller than the node's own.
@@ -40,6 +40,14 @@ pub struct Node {
     pub speed: usize,
     pub(crate) coordinate: usize,
     pub(crate) motion: Motion,
+}
+
+impl Node {
+    /// Whether the node is one of the three freedoms of a ball joint.
+    #[inline]
+    pub(crate) fn is_ball(&self) -> bool {
+        matches!(self.motion, Motion::Ball(_) | Motion::BallNext(_))
+    }
 }
 
 /// Links hung on one another by joints: any number of branches, each link on an earlier one.
