@@ -1,3 +1,10 @@
 //! All integration tests, one module a subject.
 
+mod architecture;
+mod closures;
+mod cut_or_carried;
+mod denavit_hartenberg;
+mod derivatives;
+mod energy;
+mod newton_euler;
 mod recursion_and_lagrange;

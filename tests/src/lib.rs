@@ -8,3 +8,8 @@ pub mod numbers;
 pub mod strategies;
 
 pub use blueprint::{Blueprint, Cut, Machine, Part};
+
+/// The example of the workspace's README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
