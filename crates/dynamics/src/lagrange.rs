@@ -1,4 +1,4 @@
-//! The papers' Lagrange equations \[Harlecki, Urbas, eq. (2), with the mended h_k\]: traces of `T_i H T_j^T`.
+//! The papers' Lagrange equations \[Harlecki and Urbaś, eq. (2), with the mended h_k\]: traces of `T_i H T_j^T`.
 //!
 //! An independent route to everything that the recursions find, from 4 x 4 transforms and their derivatives alone. It
 //! allocates and costs the fourth power of the depth.

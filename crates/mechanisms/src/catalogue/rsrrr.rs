@@ -1,4 +1,4 @@
-//! RSRRR: the one-freedom loop with four revolute joints and a spherical one of Harlecki and Urbas, *Dynamic analysis of the
+//! RSRRR: the one-freedom loop with four revolute joints and a spherical one of Harlecki and Urbaś, *Dynamic analysis of the
 //! RSRRR spatial linkage mechanism with friction in joints*.
 //!
 //! The paper leaves out the material, the place of the second base, the branch and the shape of the drive; these are completed
