@@ -6,5 +6,7 @@ mod cut_or_carried;
 mod denavit_hartenberg;
 mod derivatives;
 mod energy;
+mod invariances;
 mod newton_euler;
+mod puma560;
 mod recursion_and_lagrange;

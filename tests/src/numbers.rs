@@ -25,7 +25,7 @@ pub fn derivative(f: impl Fn(f64) -> DVector<f64>) -> DVector<f64> {
 
 /// The singular values of `G M^-1/2`, which tell how many closure equations are independent and how well.
 #[derive(Clone, Debug)]
-pub struct Closeness {
+pub struct Condition {
     /// Ratio of the largest to the smallest eigenvalue of the mass matrix.
     pub mass: f64,
     /// Number of independent equations.
@@ -36,7 +36,7 @@ pub struct Closeness {
 
 /// Condition of the equations; `None` where it cannot be said how many closures are independent, because a singular value
 /// lies between 1e-7 and 1e-4 of the largest.
-pub fn condition(equations: &LagrangeEquations) -> Option<Closeness> {
+pub fn condition(equations: &LagrangeEquations) -> Option<Condition> {
     let masses = equations.mass.symmetric_eigenvalues();
     let mass = masses.max() / masses.min();
     if masses.min() <= 0.0 {
@@ -44,7 +44,7 @@ pub fn condition(equations: &LagrangeEquations) -> Option<Closeness> {
     }
     if equations.gradient.is_empty() {
         let (rank, closure) = (0, 1.0);
-        return Some(Closeness { mass, rank, closure });
+        return Some(Condition { mass, rank, closure });
     }
     let l = equations.mass.clone().cholesky()?.l();
     let w = l.solve_lower_triangular(&equations.gradient.transpose())?;
@@ -54,11 +54,18 @@ pub fn condition(equations: &LagrangeEquations) -> Option<Closeness> {
     let sure = values.iter().filter(|&&s| s > 1e-4 * most);
     let (rank, least) = sure.fold((0, most), |(n, least), s| (n + 1, least.min(*s)));
     let doubtful = values.iter().any(|&s| s > 1e-7 * most && s <= 1e-4 * most);
-    (!doubtful).then_some(Closeness {
+    (!doubtful).then_some(Condition {
         mass,
         rank,
         closure: most / least,
     })
+}
+
+impl Condition {
+    /// Condition of the whole elimination: that of the mass matrix times that of the multipliers' matrix.
+    pub fn product(&self) -> f64 {
+        self.mass * self.closure * self.closure
+    }
 }
 
 /// The matrix of the magnitudes.
