@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Dynamics of spatial linkages with imperfect joints.
 #[derive(Debug, Parser)]
@@ -28,28 +28,41 @@ pub enum Command {
 pub struct RunArgs {
     /// Name of a built-in scene (see `linkdyn scenes`)
     pub scene: String,
-    /// Folder for the results; an earlier run in it is replaced as a whole
+    /// Folder for the results; an earlier run in it is replaced as a whole [default: out/SCENE or out/SCENE-friction]
     #[arg(short, long, value_name = "DIR")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Take friction in the joints into account
     #[arg(long)]
     pub friction: bool,
-    /// Integration method
+    /// Factor on all coefficients of friction
+    #[arg(long, value_name = "FACTOR", value_parser = positive, default_value_t = 1.0)]
+    pub friction_scale: f64,
+    /// Find friction by this number of sweeps reactions - friction - accelerations from zero at each evaluation, instead of
+    /// solving that loop (the paper's way)
+    #[arg(long, value_name = "K", value_parser = count)]
+    pub friction_sweeps: Option<usize>,
+    /// Formulation of the equations of motion
+    #[arg(long, value_enum, default_value_t = FormulationArg::Recursive)]
+    pub formulation: FormulationArg,
+    /// Integration method: adams (variable order and step), dop853, dopri5; with fixed step rk4, newmark [default: adams]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// Relative tolerance
+    /// Relative tolerance of adaptive methods [default: 1e-12]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub rtol: Option<f64>,
-    /// Absolute tolerance
+    /// Absolute tolerance of adaptive methods [default: that of --rtol]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub atol: Option<f64>,
-    /// Fixed step, in seconds
+    /// Corrector iterations in each step of newmark [default: until they settle]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub iterations: Option<u32>,
+    /// Fixed step of rk4 and newmark, in seconds [default: 1e-4]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub step: Option<f64>,
-    /// Simulated time at which to stop, in seconds
+    /// Simulated time at which to stop, in seconds [default: the scene's]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub until: Option<f64>,
-    /// Time between two rows of the results, in seconds
+    /// Time between two rows of the results, in seconds [default: 1/500 of the run]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub every: Option<f64>,
     /// Print the summary as JSON, and no progress
@@ -66,6 +79,23 @@ pub struct ScenesArgs {
     /// Print the list as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Ways to the equations of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormulationArg {
+    /// Recursive Newton-Euler and composite or articulated bodies
+    Recursive,
+    /// The papers' Lagrange equations with traces of 4 x 4 matrices, slow, for comparison
+    Lagrange,
+}
+
+/// A whole number from 1 to 1000.
+fn count(text: &str) -> Result<usize, String> {
+    match text.trim().parse::<usize>() {
+        Ok(k) if (1..=1000).contains(&k) => Ok(k),
+        _ => Err("give a whole number from 1 to 1000".to_owned()),
+    }
 }
 
 /// A number that is finite and greater than zero.
@@ -119,7 +149,7 @@ mod tests {
         ])
         .expect("valid options");
         assert_eq!(args.scene, "rsrrr");
-        assert_eq!(args.out, PathBuf::from("x"));
+        assert_eq!(args.out, Some(PathBuf::from("x")));
         assert!(args.friction && args.json && args.quiet);
         assert_eq!(args.method.as_deref(), Some("radau"));
         assert_eq!(
@@ -131,10 +161,11 @@ mod tests {
 
     #[test]
     fn wrong_usage_has_exit_code_2() {
-        let wrong: [&[&str]; 9] = [
+        let wrong: [&[&str]; 10] = [
             &[],
-            &["rsrrr"],
             &["rsrrr", "--out"],
+            &["rsrrr", "--friction-sweeps", "0"],
+            &["rsrrr", "--formulation", "hamilton"],
             &["rsrrr", "--out", "x", "--frictoin"],
             &["rsrrr", "--out", "x", "--rtol", "0"],
             &["rsrrr", "--out", "x", "--rtol", "-1e-3"],

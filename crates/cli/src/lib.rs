@@ -8,4 +8,6 @@ pub mod machine;
 pub mod output;
 pub mod progress;
 pub mod results;
+pub mod run;
+pub mod scenes;
 pub mod summary;

@@ -25,6 +25,11 @@ impl System {
     ///
     /// This is meant for drift: from far away use [`linkdyn_kinematics::assembly`].
     pub fn project(&self, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
+        self.project_beyond(0.0, q, v, work)
+    }
+
+    /// As [`System::project`], but residuals up to `tolerance` \[m, -\] and rates up to it \[m/s, 1/s\] stay as they are.
+    pub fn project_beyond(&self, tolerance: f64, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
         let mut drift = Drift::default();
         if self.tree.normalise(q) > ROUNDING {
             drift.changed = true;
@@ -44,7 +49,7 @@ impl System {
             if iteration == 0 {
                 drift.position = residual;
             }
-            if residual.is_nan() || residual <= ROUNDING * size {
+            if residual.is_nan() || residual <= tolerance.max(ROUNDING * size) {
                 break;
             }
             self.factor_closures(work, &mut factored);
@@ -56,7 +61,7 @@ impl System {
         self.tree.velocities(&work.positions, v, &mut work.velocities);
         let fastest = v.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
         drift.velocity = self.rate(work);
-        if drift.velocity > ROUNDING * size * fastest {
+        if drift.velocity > tolerance.max(ROUNDING * size * fastest) {
             self.factor_closures(work, &mut factored);
             self.closure_step(work);
             v.iter_mut().zip(&work.rates).for_each(|(v, step)| *v += step);

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 /// Terms that pull the closure back when it has drifted: `phi'' + 2 alpha phi' + beta^2 phi = 0` \[Baumgarte 1972\].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Baumgarte {
     /// Velocity coefficient \[1/s\].
     pub alpha: f64,
@@ -18,6 +19,7 @@ pub struct Baumgarte {
 
 /// How mass matrix and bias forces come about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Formulation {
     /// Recursive; composite bodies where branches are short, articulated bodies where they are long.
     #[default]
@@ -32,6 +34,7 @@ pub enum Formulation {
 
 /// How the loads that depend on reactions are found at each evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ReactionSolver {
     /// Newton's method to a relative residual; tells jamming and non-uniqueness apart from failure.
     Newton {

@@ -9,6 +9,7 @@ pub type DriveFunction = Arc<dyn Fn(f64, f64, f64) -> f64 + Send + Sync>;
 
 /// A torque or force on a joint with one coordinate, positive along its speed.
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Drive {
     /// Rises linearly from zero at t = 0 to `torque` at `rise_time` and stays there.
@@ -33,6 +34,7 @@ pub enum Drive {
     /// Any function, with the times at which it or a derivative of it jumps \[s\].
     Custom {
         /// The function.
+        #[cfg_attr(feature = "serde", serde(skip))]
         function: DriveFunction,
         /// Its kinks.
         stop_times: Vec<f64>,

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 /// A bearing with a friction characteristic. The bearing's z axis is the joint's axis.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(crate) struct JointFriction {
     pub characteristic: Friction,
     pub bearing: Bearing,

@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 /// Handle of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LinkHandle(Option<usize>);
 
 /// Handle of a joint of the tree.
@@ -23,6 +24,7 @@ pub struct JointHandle(usize);
 
 /// A frame on a link, where a joint sits.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Mount {
     /// The link.
     pub link: LinkHandle,
@@ -55,11 +57,13 @@ impl Mount {
 
 /// Description of a linkage. Nothing is checked before [`Linkage::build`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Linkage {
     gravity: Vector3<f64>,
     links: Vec<(String, RigidInertia)>,
     joints: Vec<JointItem>,
     cuts: Vec<CutItem>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     loads: Vec<Arc<dyn Load>>,
     /// Drift terms, if any.
     pub baumgarte: Option<Baumgarte>,
@@ -70,6 +74,7 @@ pub struct Linkage {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 struct JointItem {
     name: String,
     joint: Joint,
@@ -81,6 +86,7 @@ struct JointItem {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 struct CutItem {
     name: String,
     joint: Joint,

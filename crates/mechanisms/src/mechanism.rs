@@ -53,6 +53,7 @@ pub struct State {
 
 /// How a start is given: a guess by names, and which coordinates are held while the loops are closed.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Start {
     /// Guessed coordinates; those not named start from zero (quaternions from no turn).
     pub positions: Vec<(String, f64)>,
@@ -81,6 +82,12 @@ impl Mechanism {
     /// Names of the cut joints.
     pub fn loop_names(&self) -> impl Iterator<Item = &str> {
         self.loops.iter().map(|cut| cut.name.as_str())
+    }
+
+    /// Names of the speeds on which joint friction acts, in the order of [`crate::Observation::friction`].
+    pub fn friction_names(&self) -> impl Iterator<Item = &str> {
+        let rubbing = self.joints.iter().filter(|joint| joint.has_friction);
+        rubbing.map(|joint| self.speeds[joint.speed].as_str())
     }
 
     /// Whether a joint of the mechanism has friction.

@@ -50,14 +50,15 @@ pub fn run<M: Method<Simulation>>(
     let mut observation = Observation::default();
     let mut y = integration.state().1.to_vec();
     let start = integration.state().0;
-    let mut watch = |simulation: &mut Simulation, t: f64, y: &[f64]| -> Result<(), RunError> {
+    let mut watch = |simulation: &mut Simulation, t: f64, y: &mut [f64]| -> Result<(), RunError> {
+        simulation.put_on_closures(y);
         simulation.observe(t, y, &mut observation)?;
         match observer(&observation) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(RunError::Stopped { time: t }),
         }
     };
-    watch(integration.problem_mut(), start, &y)?;
+    watch(integration.problem_mut(), start, &mut y)?;
     let mut count = 1_u64;
     // Grid times are products, not sums, so that they do not drift.
     let grid = |count: u64| start + count as f64 * every;
@@ -66,15 +67,12 @@ pub fn run<M: Method<Simulation>>(
         let (t, _) = integration.state();
         while grid(count) <= t && grid(count) < until * (1.0 - 1e-12) {
             integration.interpolate(grid(count), &mut y)?;
-            let time = grid(count);
-            let simulation = integration.problem_mut();
-            simulation.put_on_closures(&mut y);
-            watch(simulation, time, &y)?;
+            watch(integration.problem_mut(), grid(count), &mut y)?;
             count += 1;
         }
         if let Progress::Done { t } = progress {
             y.copy_from_slice(integration.state().1);
-            watch(integration.problem_mut(), t, &y)?;
+            watch(integration.problem_mut(), t, &mut y)?;
         }
     }
     Ok(())

@@ -5,6 +5,7 @@ use crate::mechanism::Start;
 
 /// A linkage with all that a run needs.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Scene {
     /// Name, as the program knows it.
     pub name: String,

@@ -16,6 +16,7 @@ pub struct Simulation {
     coordinates: usize,
     speeds: usize,
     has_work: bool,
+    drift_tolerance: f64,
     worst: Worst,
 }
 
@@ -65,6 +66,7 @@ impl Simulation {
             coordinates: system.tree().coordinates(),
             speeds: system.tree().speeds(),
             has_work: !conservative || mechanism.has_friction(),
+            drift_tolerance: 0.0,
             worst: Worst::default(),
             mechanism: mechanism.clone(),
         }
@@ -99,6 +101,12 @@ impl Simulation {
         self.has_work
     }
 
+    /// Lets steps leave closure residuals and rates up to this size \[m, m/s, -\] instead of projecting every one; zero, the
+    /// default, projects always. Observed states are put on the closures in any case.
+    pub fn set_drift_tolerance(&mut self, tolerance: f64) {
+        self.drift_tolerance = tolerance;
+    }
+
     /// Work counters since the start, observations included.
     pub fn counters(&self) -> Counters {
         self.work.counters()
@@ -120,11 +128,13 @@ impl Simulation {
 
     /// Puts a state vector back onto the closures; returns whether it was changed.
     pub fn put_on_closures(&mut self, y: &mut [f64]) -> bool {
+        self.project_beyond(0.0, y)
+    }
+
+    fn project_beyond(&mut self, tolerance: f64, y: &mut [f64]) -> bool {
         let (q, rest) = y.split_at_mut(self.coordinates);
-        let drift = self
-            .mechanism
-            .system
-            .project(q, &mut rest[..self.speeds], &mut self.work);
+        let (system, v) = (&self.mechanism.system, &mut rest[..self.speeds]);
+        let drift = system.project_beyond(tolerance, q, v, &mut self.work);
         self.worst.position_drift = self.worst.position_drift.max(drift.position);
         self.worst.velocity_drift = self.worst.velocity_drift.max(drift.velocity);
         drift.changed
@@ -181,9 +191,7 @@ impl Simulation {
                 names.extend(["fx", "fy", "fz", "nx", "ny", "nz"].map(|c| format!("reaction.{}.{c}", joint.name)));
             }
         }
-        for joint in mechanism.joints.iter().filter(|joint| joint.has_friction) {
-            names.push(format!("friction.{}", mechanism.speeds[joint.speed]));
-        }
+        names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
         names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
         if !mechanism.loops.is_empty() {
             names.extend(["position", "velocity"].map(|c| format!("violation.{c}")));
@@ -248,7 +256,7 @@ impl Ode for Simulation {
     }
 
     fn project(&mut self, _t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
-        Ok(self.put_on_closures(y))
+        Ok(self.project_beyond(self.drift_tolerance, y))
     }
 }
 

@@ -55,7 +55,9 @@ pub fn chain_case(n: usize) -> Case {
     for k in 0..n {
         let twist = Pose::turn(Vector3::x_axis(), 0.3 + 0.1 * k as f64);
         let placement = Pose::translation(if k == 0 { 0.0 } else { 0.3 }, 0.0, 0.0) * twist;
-        last = tree.attach(last, placement, Joint::revolute_z()).expect("the placement is rigid");
+        last = tree
+            .attach(last, placement, Joint::revolute_z())
+            .expect("the placement is rigid");
         inertias.push(RigidInertia::solid_cylinder(7850.0, 0.03, 0.3, &Vector3::x()));
     }
     let system = System::new(Description::new(tree, inertias, Vector3::new(0.0, 0.0, -9.81))).expect("valid");
@@ -70,7 +72,8 @@ pub fn chain_case(n: usize) -> Case {
 
 /// The unit of the tables: factor and solve of one dense 7 x 7 system.
 pub fn lu7() -> impl FnMut() {
-    let a = SMatrix::<f64, 7, 7>::from_fn(|i, j| 1.0 / (1.0 + i as f64 + 2.0 * j as f64) + if i == j { 3.0 } else { 0.0 });
+    let a =
+        SMatrix::<f64, 7, 7>::from_fn(|i, j| 1.0 / (1.0 + i as f64 + 2.0 * j as f64) + if i == j { 3.0 } else { 0.0 });
     let b = SVector::<f64, 7>::from_fn(|i, _| 1.0 + i as f64);
     move || {
         let x = std::hint::black_box(a).lu().solve(std::hint::black_box(&b));

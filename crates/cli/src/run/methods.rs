@@ -1,0 +1,126 @@
+//! The integration methods by name, and the tolerances or steps that go with them.
+
+use linkdyn_mechanisms::Simulation;
+use linkdyn_mechanisms::integrators::{
+    Adams, Corrector, Dop853, DormandPrince5, Method, Newmark, Rk4, Settings, Tolerance,
+};
+use serde::Serialize;
+
+use crate::args::RunArgs;
+use crate::errors::CliError;
+
+/// A method with all its settings, defaults filled in.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    /// Name of the method.
+    pub method: String,
+    /// Relative tolerance of adaptive methods.
+    pub rtol: Option<f64>,
+    /// Absolute tolerance of adaptive methods.
+    pub atol: Option<f64>,
+    /// Step of fixed-step methods \[s\].
+    pub step: Option<f64>,
+    /// Corrector iterations a step, where they are fixed.
+    pub iterations: Option<u32>,
+}
+
+/// Methods with error control, and methods of fixed step.
+const ADAPTIVE: [&str; 3] = ["adams", "dop853", "dopri5"];
+const FIXED: [&str; 2] = ["rk4", "newmark"];
+
+/// Default tolerance, relative and absolute \[rad, m, rad/s, m/s\].
+const TOLERANCE: f64 = 1e-12;
+/// Loosest tolerance taken without a word: the start of RSRRR is an unstable equilibrium, and a loose run may fall to the
+/// wrong side.
+const LOOSEST: f64 = 1e-4;
+/// Default fixed step \[s\].
+const STEP: f64 = 1e-4;
+
+impl Plan {
+    /// What the command line asks for.
+    ///
+    /// # Errors
+    /// Unknown methods, and options that do not go with the method.
+    pub fn new(args: &RunArgs) -> Result<Self, CliError> {
+        let method = args.method.as_deref().unwrap_or("adams");
+        let fixed = FIXED.contains(&method);
+        if !fixed && !ADAPTIVE.contains(&method) {
+            return Err(CliError::unknown("method", method, ADAPTIVE.into_iter().chain(FIXED)));
+        }
+        let misplaced = |option: &str, hint: &str| {
+            Err(CliError::usage(format!("`{option}` does not go with method `{method}`")).with_hint(hint))
+        };
+        if fixed && (args.rtol.is_some() || args.atol.is_some()) {
+            return misplaced(
+                "--rtol/--atol",
+                "give its `--step`, or take an adaptive method: adams, dop853, dopri5",
+            );
+        }
+        if !fixed && args.step.is_some() {
+            return misplaced(
+                "--step",
+                "give `--rtol` and `--atol`, or take a method of fixed step: rk4, newmark",
+            );
+        }
+        if method != "newmark" && args.iterations.is_some() {
+            return misplaced("--iterations", "only newmark has a corrector to iterate");
+        }
+        let rtol = args.rtol.unwrap_or(TOLERANCE);
+        if rtol > LOOSEST {
+            return Err(
+                CliError::usage(format!("rtol = {rtol} is too loose: the result would mean nothing"))
+                    .with_hint(format!("give at most {LOOSEST}")),
+            );
+        }
+        Ok(Self {
+            method: method.to_owned(),
+            rtol: (!fixed).then_some(rtol),
+            atol: (!fixed).then(|| args.atol.unwrap_or(rtol)),
+            step: fixed.then(|| args.step.unwrap_or(STEP)),
+            iterations: args.iterations,
+        })
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> Box<dyn Method<Simulation>> {
+        let step = self.step.unwrap_or(STEP);
+        match self.method.as_str() {
+            "dop853" => Box::new(Dop853::default()),
+            "dopri5" => Box::new(DormandPrince5::default()),
+            "rk4" => Box::new(Rk4::new(step)),
+            "newmark" => Box::new(Newmark::new(step, self.corrector())),
+            _ => Box::new(Adams::default()),
+        }
+    }
+
+    fn corrector(&self) -> Corrector {
+        match self.iterations {
+            Some(iterations) => Corrector::Times(iterations),
+            None => Corrector::Until {
+                change: 1e-13,
+                at_most: 100,
+            },
+        }
+    }
+
+    /// Drift of the loops that a step may leave: a tenth of the tolerance, so that it never shows beside the error.
+    #[must_use]
+    pub fn drift_tolerance(&self) -> f64 {
+        0.1 * self.atol.unwrap_or(0.0)
+    }
+
+    /// Tolerances for a simulation; the work at the end of the state follows the motion and is not controlled.
+    #[must_use]
+    pub fn settings(&self, simulation: &Simulation) -> Settings {
+        let atol = self.atol.unwrap_or(TOLERANCE);
+        let mut absolute = vec![atol; simulation.coordinates() + simulation.speeds()];
+        if simulation.has_work() {
+            absolute.push(f64::INFINITY);
+        }
+        Settings {
+            absolute: Tolerance::from(absolute),
+            ..Settings::tolerances(self.rtol.unwrap_or(TOLERANCE), atol)
+        }
+    }
+}
