@@ -1,6 +1,8 @@
 //! All integration tests, one module a subject.
 
 mod architecture;
+mod assembly;
+mod closed_form_loops;
 mod closures;
 mod cut_or_carried;
 mod denavit_hartenberg;
@@ -8,5 +10,7 @@ mod derivatives;
 mod energy;
 mod invariances;
 mod newton_euler;
+mod projection;
 mod puma560;
 mod recursion_and_lagrange;
+mod redundant_closures;

@@ -271,7 +271,7 @@ impl Tree {
         }
     }
 
-    /// Brings quaternions back to unit length; returns the largest defect of `|q|^2` found.
+    /// Brings quaternions back to unit length, but for rounding; returns the largest defect of `|q|^2` found.
     pub fn normalise(&self, q: &mut [f64]) -> f64 {
         let mut worst: f64 = 0.0;
         if self.coordinates == self.speeds {
@@ -281,8 +281,12 @@ impl Tree {
             if let Motion::Ball(_) = node.motion {
                 let q = &mut q[node.coordinate..node.coordinate + 4];
                 let square = q.iter().map(|x| x * x).sum::<f64>();
-                worst = worst.max((square - 1.0).abs());
-                q.iter_mut().for_each(|x| *x /= square.sqrt());
+                let defect = (square - 1.0).abs();
+                worst = worst.max(defect);
+                // Rounding stays: a state that has been normalised is not changed again.
+                if defect.is_nan() || defect > 8.0 * f64::EPSILON {
+                    q.iter_mut().for_each(|x| *x /= square.sqrt());
+                }
             }
         }
         worst
