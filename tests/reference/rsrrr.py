@@ -22,7 +22,7 @@ Formulation (deliberately unlike the program under test):
     closed-form positions and orientations, as Fourier series, integrated with 40-digit arithmetic.
     It shares no equation with A, B, C except the geometry.
 
-Usage:  rsrrr.py            writes rsrrr_ideal.csv, rsrrr_friction.csv and prints the comparisons
+Usage:  rsrrr.py            writes rsrrr_ideal.csv, rsrrr_friction.csv, rsrrr_friction_events.csv and prints the comparisons
 Needs numpy, scipy, numba, mpmath. Deterministic; a few minutes.
 """
 import sys
@@ -910,6 +910,15 @@ def check_rows(names, rows, scale, picks):
     return [float(x) for x in worst]
 
 
+def write_events(path, ev_t, ev_k):
+    """Times where a joint speed or the axial force in a joint changes sign."""
+    with open(path, "w", newline="\n") as f:
+        f.write("t,kind,name\n")
+        for t, k in zip(ev_t, ev_k):
+            kind, name = ("reversal", COORDS[k]) if k < 4 else ("axial", JOINTS[k - 4])
+            f.write(f"{t:.11f},{kind},{name}\n")
+
+
 def out_times():
     return np.array([k / 20 for k in range(101)])
 
@@ -937,6 +946,8 @@ def main():
         names, rows = table(scale, t, Y)
         print(f"{label}: A {r[8]} steps, {len(set(np.round(ev_t, 9)))} event times, psi11(5) = {Y[-1, 0]:.15g}, speed {Y[-1, 1]:.15g}  [{time.time() - t0:.0f} s]")
         write(here / f"rsrrr_{label}.csv", names, rows)
+        if scale:
+            write_events(here / "rsrrr_friction_events.csv", ev_t, ev_k)
         e = rows[:, -3] + rows[:, -2] - rows[:, -1]
         print(f"  A energy balance {np.abs(e - e[0]).max():.2e}")
         c = check_rows(names, rows, scale, range(0, 101, 10))
