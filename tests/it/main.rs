@@ -12,5 +12,8 @@ mod invariances;
 mod newton_euler;
 mod projection;
 mod puma560;
+mod reaction_loop;
 mod recursion_and_lagrange;
 mod redundant_closures;
+mod refusals;
+mod rsrrr;

@@ -5,6 +5,8 @@ mod blueprint;
 pub mod linkages;
 pub mod loads;
 pub mod numbers;
+pub mod reference;
+pub mod rsrrr;
 pub mod strategies;
 
 pub use blueprint::{Blueprint, Cut, Machine, Part};

@@ -2,6 +2,7 @@
 
 use linkdyn_dynamics::{Capacity, Load, Loads, Motion, Reaction, ReactionLoad};
 use linkdyn_kinematics::{LinkId, Wrench};
+use nalgebra::Vector3;
 
 /// Constant generalised forces and constant wrenches.
 #[derive(Clone, Debug)]
@@ -79,24 +80,32 @@ impl ReactionLoad for Rough {
     }
 }
 
-/// A load that is linear in the reaction: gain 1 at any speed, capacity `constant + force . direction`.
+/// A load on a slide along z that follows the force along the slide, at any speed: size `|constant - slope * force|` or, without
+/// the fold, `constant - slope * force`.
 #[derive(Clone, Copy, Debug)]
-pub struct Linear {
-    /// Capacity without reaction \[N\].
+pub struct AlongSlide {
+    /// Size without force \[N\].
     pub constant: f64,
-    /// Weights of the reaction's force and torque.
-    pub weights: Wrench,
+    /// Change of the size with the force along the slide, other loads on the slide included \[-\].
+    pub slope: f64,
+    /// Whether the size folds to stay positive.
+    pub folded: bool,
 }
 
-impl ReactionLoad for Linear {
+impl ReactionLoad for AlongSlide {
     fn gain(&self, _speed: f64) -> f64 {
         1.0
     }
 
     fn capacity(&self, reaction: &Reaction) -> Capacity {
+        let value = self.constant - self.slope * reaction.force.z;
+        let sign = if self.folded { value.signum() } else { 1.0 };
         Capacity {
-            value: self.constant + self.weights.force.dot(&reaction.force) + self.weights.torque.dot(&reaction.torque),
-            gradient: self.weights,
+            value: sign * value,
+            gradient: Wrench {
+                torque: Vector3::zeros(),
+                force: Vector3::new(0.0, 0.0, -sign * self.slope),
+            },
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What of a run is kept in memory: the curves of the pictures and the figures of the summary.
 
+use std::f64::consts::TAU;
+
 use linkdyn_mechanisms::Observation;
 
 /// Curves over time, one point an output.
@@ -50,13 +52,21 @@ impl Record {
         self.work = o.work;
     }
 
-    /// Mean speed of coordinate `k` over the last `share` of the run, and where that begins \[s\].
+    /// Mean speed of coordinate `k` over its last whole turns, as many as fit into the last `share` of the run, and where
+    /// they begin \[s\]; `None` where it makes no whole turn.
     #[must_use]
     pub fn mean_speed(&self, k: usize, share: f64) -> Option<(f64, f64)> {
         let (first, last) = (*self.t.first()?, *self.t.last()?);
         let from = self.t.iter().position(|&t| t >= last - share * (last - first))?;
-        let (t, q) = (self.t[from], &self.q[k]);
-        (last > t).then(|| ((q[q.len() - 1] - q[from]) / (last - t), t))
+        let q = self.q.get(k)?;
+        let turned = q.last()? - q[from];
+        let whole = (turned / TAU).trunc() * TAU;
+        let begin = q.last()? - whole;
+        // Between two rows the angle is as good as straight.
+        let after = (from + 1..q.len()).find(|&i| (q[i] - begin) * whole >= 0.0)?;
+        let part = (begin - q[after - 1]) / (q[after] - q[after - 1]);
+        let t = self.t[after - 1] + part * (self.t[after] - self.t[after - 1]);
+        (whole != 0.0 && t < last).then(|| (whole / (last - t), t))
     }
 }
 

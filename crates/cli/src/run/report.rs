@@ -40,7 +40,7 @@ pub fn summary(scene: &Scene, mechanism: &Mechanism, record: &Record, outcome: &
     table.entry("simulated until", Cell::number(end), "s");
     let crank = mechanism.coordinate_names().position(|name| name == scene.crank);
     if let Some((speed, from)) = crank.and_then(|k| record.mean_speed(k, STEADY)) {
-        let label = format!("mean speed of {} from {from:.3} s", scene.crank);
+        let label = format!("mean speed of {}, whole turns from {from:.3} s", scene.crank);
         table.entry(&label, Cell::number(speed), "rad/s");
     }
     for (name, force) in mechanism.joint_names().zip(&record.force) {

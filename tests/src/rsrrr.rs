@@ -1,0 +1,92 @@
+//! The RSRRR scene, run by any method, with all it observes.
+
+use linkdyn_integrators::{Integration, Method, Settings, Statistics, Tolerance};
+use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
+use linkdyn_mechanisms::{Mechanism, Observation, RunError, Scene, Simulation, State, run};
+use std::ops::ControlFlow;
+
+/// A scene, built and closed.
+pub struct Ready {
+    /// The scene.
+    pub scene: Scene,
+    /// Its mechanism.
+    pub mechanism: Mechanism,
+    /// Its start.
+    pub start: State,
+}
+
+/// RSRRR with or without friction, its coefficients scaled.
+///
+/// # Panics
+/// If the scene does not build or close.
+pub fn ready(friction: bool, friction_scale: f64) -> Ready {
+    prepare(rsrrr(&Rsrrr {
+        friction,
+        friction_scale,
+    }))
+}
+
+/// Builds a scene and closes its loops.
+///
+/// # Panics
+/// If it does not build or close.
+pub fn prepare(scene: Scene) -> Ready {
+    let mechanism = scene.linkage.build().expect("the scene builds");
+    let (start, _) = mechanism.assemble(&scene.start).expect("the scene closes");
+    Ready {
+        scene,
+        mechanism,
+        start,
+    }
+}
+
+/// A finished run.
+pub struct Finished {
+    /// All rows.
+    pub rows: Vec<Observation>,
+    /// Costs.
+    pub statistics: Statistics,
+    /// The simulation as it was left.
+    pub simulation: Simulation,
+    /// Why it ended early, if it did.
+    pub end: Result<(), RunError>,
+}
+
+/// Tolerances for all of the state but the work, which follows the motion.
+pub fn tolerances(simulation: &Simulation, tolerance: f64) -> Settings {
+    let mut absolute = vec![tolerance; simulation.coordinates() + simulation.speeds()];
+    absolute.extend(simulation.has_work().then_some(f64::INFINITY));
+    Settings {
+        absolute: Tolerance::from(absolute),
+        ..Settings::tolerances(tolerance, tolerance)
+    }
+}
+
+/// Runs to `until` with rows each `every` seconds.
+///
+/// # Panics
+/// If the settings are refused.
+pub fn simulate(ready: &Ready, method: impl Method<Simulation>, tolerance: f64, until: f64, every: f64) -> Finished {
+    let simulation = Simulation::new(&ready.mechanism);
+    let y = simulation.state_vector(&ready.start);
+    let settings = tolerances(&simulation, tolerance);
+    let stops = ready.mechanism.system().stop_times();
+    let integration = Integration::new(simulation, method, 0.0, &y, settings).expect("valid settings");
+    let mut integration = integration.with_stops(&stops).expect("finite stops");
+    let mut rows = Vec::new();
+    let end = run(&mut integration, until, every, |o| {
+        rows.push(o.clone());
+        ControlFlow::Continue(())
+    });
+    Finished {
+        rows,
+        statistics: integration.statistics(),
+        simulation: integration.problem().clone(),
+        end,
+    }
+}
+
+/// Largest difference of two sequences of numbers.
+pub fn distance<'a>(a: impl IntoIterator<Item = &'a f64>, b: impl IntoIterator<Item = &'a f64>) -> f64 {
+    a.into_iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
