@@ -3,7 +3,7 @@
 use linkdyn_dynamics::{DynamicsError, Formulation, ReactionSolver};
 use linkdyn_integrators::{Adams, Corrector, Dop853, DormandPrince5, IntegrationError, Newmark, Rk4};
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
-use linkdyn_mechanisms::{Observation, RunError, Simulation};
+use linkdyn_mechanisms::{MotionError, Observation, RunError, Simulation};
 use linkdyn_tests::reference::{self, Table};
 use linkdyn_tests::rsrrr::{Finished, distance, prepare, ready, simulate};
 
@@ -280,13 +280,13 @@ fn rk4_converges_to_the_reference_with_order_four() {
 /// The diagnosis a run ended with.
 fn diagnosis(end: RunError) -> DynamicsError {
     let source = match end {
-        RunError::Dynamics(error) => return error,
+        RunError::Motion(error) => return error.cause,
         RunError::Integration(IntegrationError::StepTooSmall {
             source: Some(source), ..
         }) => source,
         other => panic!("{other}"),
     };
-    *source.downcast::<DynamicsError>().expect("a diagnosis of the dynamics")
+    source.downcast::<MotionError>().expect("a diagnosis").cause
 }
 
 #[test]

@@ -105,14 +105,30 @@ pub enum DynamicsError {
     },
     /// The loop did not settle for numerical reasons.
     #[error(
-        "t = {time} s: loads that depend on reactions did not settle: relative residual {residual:e} after {iterations} iterations"
+        "t = {time} s: loads that depend on reactions did not settle: relative residual {residual:e} after {iterations} \
+         iterations, weakest at speed {speed}"
     )]
     NotSettled {
         /// Time \[s\].
         time: f64,
+        /// Speed of the joint whose load grows fastest there.
+        speed: usize,
         /// Relative residual reached.
         residual: f64,
         /// Iterations made.
         iterations: usize,
     },
+}
+
+impl DynamicsError {
+    /// Index of the speed that the error speaks of.
+    pub fn speed(&self) -> usize {
+        match self {
+            Self::SingularMass { speed, .. }
+            | Self::NotFinite { speed, .. }
+            | Self::Jammed { speed, .. }
+            | Self::NotUnique { speed, .. }
+            | Self::NotSettled { speed, .. } => *speed,
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! What can be wrong with a linkage.
 
-use linkdyn_dynamics::SystemError;
+use linkdyn_dynamics::{DynamicsError, SystemError};
 use linkdyn_friction::ParameterError;
 use linkdyn_kinematics::TreeError;
 use linkdyn_kinematics::assembly::AssemblyError;
@@ -134,4 +134,16 @@ pub enum StartError {
     /// The loops cannot be closed.
     #[error("start: {0}")]
     Assembly(#[from] AssemblyError),
+}
+
+/// Why a mechanism has no accelerations at a state, with the name of the coordinate that the cause speaks of.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{cause} (speed {speed} is that of `{coordinate}`)")]
+pub struct MotionError {
+    /// The coordinate.
+    pub coordinate: String,
+    /// Its speed's index.
+    pub speed: usize,
+    /// What went wrong.
+    pub cause: DynamicsError,
 }

@@ -11,7 +11,7 @@ mod scene;
 mod simulation;
 
 pub use drive::{Drive, DriveFunction};
-pub use error::{BuildError, StartError};
+pub use error::{BuildError, MotionError, StartError};
 pub use linkage::{JointHandle, LinkHandle, Linkage, Mount};
 pub use mechanism::{Mechanism, Start, State};
 pub use run::{RunError, run};

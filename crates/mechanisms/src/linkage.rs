@@ -65,6 +65,9 @@ pub struct Linkage {
     cuts: Vec<CutItem>,
     #[cfg_attr(feature = "serde", serde(skip))]
     loads: Vec<Arc<dyn Load>>,
+    /// Whether a joint was named by a handle of another linkage.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    foreign: bool,
     /// Drift terms, if any.
     pub baumgarte: Option<Baumgarte>,
     /// Formulation of the equations of motion.
@@ -106,6 +109,7 @@ impl Linkage {
             joints: Vec::new(),
             cuts: Vec::new(),
             loads: Vec::new(),
+            foreign: false,
             baumgarte: None,
             formulation: Formulation::default(),
             reaction_solver: ReactionSolver::default(),
@@ -145,13 +149,14 @@ impl Linkage {
     /// Names the coordinates of a joint. Without this a single coordinate has the joint's name, several are called
     /// `JOINT.psi` and so on, see [`Joint::coordinate_names`].
     pub fn coordinate_names(&mut self, joint: JointHandle, names: &[&str]) -> &mut Self {
-        self.joints[joint.0].coordinate_names = Some(names.iter().map(|&name| name.to_owned()).collect());
+        let names = names.iter().map(|&name| name.to_owned()).collect();
+        self.on(joint, |item| item.coordinate_names = Some(names));
         self
     }
 
     /// Adds a drive or resistance to a joint with one coordinate; several add up.
     pub fn drive(&mut self, joint: JointHandle, drive: Drive) -> &mut Self {
-        self.joints[joint.0].drives.push(drive);
+        self.on(joint, |item| item.drives.push(drive));
         self
     }
 
@@ -163,11 +168,20 @@ impl Linkage {
         characteristic: impl Into<Friction>,
         bearing: impl Into<Bearing>,
     ) -> &mut Self {
-        self.joints[joint.0].friction = Some(JointFriction {
+        let friction = JointFriction {
             characteristic: characteristic.into(),
             bearing: bearing.into(),
-        });
+        };
+        self.on(joint, |item| item.friction = Some(friction));
         self
+    }
+
+    /// Changes a joint; a handle that this linkage did not give out is remembered for [`Linkage::build`] to refuse.
+    fn on(&mut self, joint: JointHandle, change: impl FnOnce(&mut JointItem)) {
+        match self.joints.get_mut(joint.0) {
+            Some(item) => change(item),
+            None => self.foreign = true,
+        }
     }
 
     /// Adds any other load.
@@ -284,6 +298,12 @@ impl Linkage {
     }
 
     fn check_items(&self) -> Result<(), BuildError> {
+        if self.foreign {
+            return Err(BuildError::Foreign {
+                what: "the handle of a joint",
+                name: "drive, friction or coordinate_names".into(),
+            });
+        }
         for (name, inertia) in &self.links {
             let link = name.clone();
             inertia

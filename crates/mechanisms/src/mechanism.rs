@@ -1,7 +1,7 @@
 //! A built linkage: the equations of motion with names.
 
-use crate::error::StartError;
-use linkdyn_dynamics::System;
+use crate::error::{MotionError, StartError};
+use linkdyn_dynamics::{DynamicsError, System};
 use linkdyn_kinematics::assembly::{self, Assembly, Settings};
 use linkdyn_kinematics::{Attachment, LinkId, Pose};
 use std::sync::Arc;
@@ -93,6 +93,18 @@ impl Mechanism {
     /// Whether a joint of the mechanism has friction.
     pub fn has_friction(&self) -> bool {
         self.joints.iter().any(|joint| joint.has_friction)
+    }
+
+    /// An error of the equations of motion in terms of this mechanism's names.
+    #[cold]
+    pub fn explain(&self, cause: DynamicsError) -> MotionError {
+        let speed = cause.speed();
+        let coordinate = self.speeds.get(speed).cloned().unwrap_or_default();
+        MotionError {
+            coordinate,
+            speed,
+            cause,
+        }
     }
 
     /// Where a link's frame sits on the tree; `None` for unknown names.

@@ -1,7 +1,7 @@
 //! One run of a simulation with output on a grid of times.
 
+use crate::error::MotionError;
 use crate::simulation::{Observation, Simulation};
-use linkdyn_dynamics::DynamicsError;
 use linkdyn_integrators::{Integration, IntegrationError, Method, Progress};
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -15,9 +15,11 @@ pub enum RunError {
     Integration(#[from] IntegrationError),
     /// A state could not be observed.
     #[error(transparent)]
-    Dynamics(#[from] DynamicsError),
+    Motion(#[from] MotionError),
     /// The grid of output times makes no sense.
-    #[error("output every {every} s until {until} s: both must be finite and positive")]
+    #[error(
+        "output every {every} s until {until} s: both must be finite, the first positive and the second after the start"
+    )]
     Grid {
         /// Spacing \[s\].
         every: f64,
@@ -44,12 +46,12 @@ pub fn run<M: Method<Simulation>>(
     mut observer: impl FnMut(&Observation) -> ControlFlow<()>,
 ) -> Result<(), RunError> {
     let sound = |x: f64| x.is_finite() && x > 0.0;
-    if !(sound(every) && until.is_finite()) {
+    let start = integration.state().0;
+    if !(sound(every) && until.is_finite() && until >= start) {
         return Err(RunError::Grid { every, until });
     }
     let mut observation = Observation::default();
     let mut y = integration.state().1.to_vec();
-    let start = integration.state().0;
     let mut watch = |simulation: &mut Simulation, t: f64, y: &mut [f64]| -> Result<(), RunError> {
         simulation.put_on_closures(y);
         simulation.observe(t, y, &mut observation)?;
@@ -65,7 +67,7 @@ pub fn run<M: Method<Simulation>>(
     while integration.state().0 < until {
         let progress = integration.advance(until)?;
         let (t, _) = integration.state();
-        while grid(count) <= t && grid(count) < until * (1.0 - 1e-12) {
+        while grid(count) <= t && grid(count) < until - 1e-9 * every {
             integration.interpolate(grid(count), &mut y)?;
             watch(integration.problem_mut(), grid(count), &mut y)?;
             count += 1;

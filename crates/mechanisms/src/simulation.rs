@@ -1,7 +1,8 @@
 //! A mechanism in motion: the initial value problem, and what can be observed at a state.
 
+use crate::error::MotionError;
 use crate::mechanism::{Mechanism, State};
-use linkdyn_dynamics::{Counters, DynamicsError, Energy, Reaction, Workspace};
+use linkdyn_dynamics::{Counters, Energy, Reaction, Workspace};
 use linkdyn_integrators::{EvalError, Ode, SecondOrder};
 use linkdyn_kinematics::Wrench;
 
@@ -120,9 +121,10 @@ impl Simulation {
     /// Accelerations at a state.
     ///
     /// # Errors
-    /// [`DynamicsError`].
-    pub fn accelerations(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<&[f64], DynamicsError> {
-        self.mechanism.system.evaluate(t, q, v, &mut self.work)?;
+    /// [`MotionError`] where they do not exist.
+    pub fn accelerations(&mut self, t: f64, q: &[f64], v: &[f64]) -> Result<&[f64], MotionError> {
+        let evaluated = self.mechanism.system.evaluate(t, q, v, &mut self.work);
+        evaluated.map_err(|cause| self.mechanism.explain(cause))?;
         Ok(self.work.rates())
     }
 
@@ -143,14 +145,15 @@ impl Simulation {
     /// All that can be said of the mechanism at `t` and state vector `y`.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the accelerations do not exist.
-    pub fn observe(&mut self, t: f64, y: &[f64], observation: &mut Observation) -> Result<(), DynamicsError> {
+    /// [`MotionError`] where the accelerations do not exist.
+    pub fn observe(&mut self, t: f64, y: &[f64], observation: &mut Observation) -> Result<(), MotionError> {
         let system = &self.mechanism.system;
         let (q, rest) = y.split_at(self.coordinates);
         let (v, work) = rest.split_at(self.speeds);
         let o = observation;
         o.violation = system.violation(q, v, &mut self.work);
-        system.evaluate(t, q, v, &mut self.work)?;
+        let evaluated = system.evaluate(t, q, v, &mut self.work);
+        evaluated.map_err(|cause| self.mechanism.explain(cause))?;
         system.reactions(&mut self.work);
         o.t = t;
         replace(&mut o.q, q);
@@ -241,9 +244,8 @@ impl Ode for Simulation {
         let (q, rest) = y.split_at(self.coordinates);
         let v = &rest[..self.speeds];
         // A trial state may lie where the mechanism jams or stretches; a shorter step may not.
-        system
-            .evaluate(t, q, v, &mut self.work)
-            .map_err(|error| EvalError::Retry(Box::new(error)))?;
+        let evaluated = system.evaluate(t, q, v, &mut self.work);
+        evaluated.map_err(|cause| EvalError::Retry(Box::new(self.mechanism.explain(cause))))?;
         let (q_rate, rest) = dy.split_at_mut(self.coordinates);
         let (v_rate, work_rate) = rest.split_at_mut(self.speeds);
         system.tree().coordinate_rates(q, v, q_rate);
