@@ -5,6 +5,7 @@ mod control;
 mod error;
 mod hermite;
 mod integration;
+mod lanes;
 mod method;
 mod newmark;
 mod problem;

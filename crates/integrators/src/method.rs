@@ -99,8 +99,8 @@ pub trait Method<P: ?Sized> {
         projected: bool,
     ) -> Result<&[f64], EvalError>;
 
-    /// Takes the closed attempt as the step made.
-    fn accept(&mut self, step: Step<'_>, weights: &Weights, y_new: &[f64]);
+    /// Takes the closed attempt, of signed length `h`, as the step made.
+    fn accept(&mut self, h: f64);
 
     /// f at the state reached.
     fn derivative(&self) -> &[f64];
@@ -162,8 +162,8 @@ impl<P: Ode + ?Sized> Method<P> for Box<dyn Method<P> + '_> {
     ) -> Result<&[f64], EvalError> {
         (**self).close(problem, step, y_new, projected)
     }
-    fn accept(&mut self, step: Step<'_>, weights: &Weights, y_new: &[f64]) {
-        (**self).accept(step, weights, y_new);
+    fn accept(&mut self, h: f64) {
+        (**self).accept(h);
     }
     fn derivative(&self) -> &[f64] {
         (**self).derivative()

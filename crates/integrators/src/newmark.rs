@@ -185,7 +185,7 @@ impl<P: SecondOrder + ?Sized> Method<P> for Newmark {
         Ok(&self.f_new)
     }
 
-    fn accept(&mut self, _step: Step<'_>, _weights: &Weights, _y_new: &[f64]) {
+    fn accept(&mut self, _h: f64) {
         self.moved_on = true;
     }
 

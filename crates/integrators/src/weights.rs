@@ -1,21 +1,48 @@
 //! The norm in which errors are measured.
 
+use crate::lanes::{LANES, Lanes};
+
 /// Tolerances of all components, and the norm that belongs to them.
 #[derive(Debug, Clone)]
 pub struct Weights {
-    relative: Vec<f64>,
-    absolute: Vec<f64>,
+    inverse_dim: f64,
+    scales: Vec<Scale>,
+}
+
+/// Tolerances of one block of components.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scale {
+    relative: Lanes,
+    absolute: Lanes,
+}
+
+impl Scale {
+    /// 1 / sᵢ for a step between two states.
+    #[inline(always)]
+    pub(crate) fn inverse(&self, y0: Lanes, y1: Lanes) -> Lanes {
+        // Unlike `f64::max` this lets a y₁ through that is not a number.
+        let size = y0.zip(y1, |y0, y1| if y0.abs() > y1.abs() { y0.abs() } else { y1.abs() });
+        (self.absolute + self.relative * size).map(|scale| 1.0 / scale)
+    }
 }
 
 impl Weights {
     /// Tolerances of each component, of equal length.
-    pub(crate) fn new(relative: Vec<f64>, absolute: Vec<f64>) -> Self {
-        Self { relative, absolute }
+    pub(crate) fn new(relative: &[f64], absolute: &[f64]) -> Self {
+        let blocks = relative.chunks(LANES).zip(absolute.chunks(LANES));
+        let scale = |(relative, absolute)| Scale {
+            relative: Lanes::load(relative),
+            absolute: Lanes::load_or(absolute, 1.0),
+        };
+        Self {
+            inverse_dim: 1.0 / relative.len().max(1) as f64,
+            scales: blocks.map(scale).collect(),
+        }
     }
 
     /// √(Σ (eᵢ / sᵢ)² / n) with sᵢ = absoluteᵢ + relativeᵢ max(|y₀ᵢ|, |y₁ᵢ|) (Hairer, Nørsett, Wanner I, eq. II.4.10-11).
     ///
-    /// Not a number if an error or a state is not.
+    /// Not a number if an error or the new state is not.
     #[inline]
     #[must_use]
     pub fn norm(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
@@ -25,22 +52,36 @@ impl Weights {
     /// The mean squares of several errors at once.
     #[inline]
     pub(crate) fn mean_squares<const K: usize>(&self, y0: &[f64], y1: &[f64], errors: [&[f64]; K]) -> [f64; K] {
-        let n = y0.len();
-        let (y1, relative, absolute) = (&y1[..n], &self.relative[..n], &self.absolute[..n]);
-        let errors = errors.map(|error| &error[..n]);
-        let mut sums = [0.0; K];
-        for i in 0..n {
-            let weight = 1.0 / (absolute[i] + relative[i] * y0[i].abs().max(y1[i].abs()));
-            for (sum, error) in sums.iter_mut().zip(errors) {
-                *sum += (error[i] * weight) * (error[i] * weight);
+        let mut sums = [Lanes::ZERO; K];
+        let mut errors = errors.map(|error| error.chunks(LANES));
+        for ((scale, y0), y1) in self.scales.iter().zip(y0.chunks(LANES)).zip(y1.chunks(LANES)) {
+            let weight = scale.inverse(Lanes::load(y0), Lanes::load(y1));
+            for (sum, error) in sums.iter_mut().zip(&mut errors) {
+                *sum += (weight * Lanes::load(error.next().unwrap_or_default())).squared();
             }
         }
-        sums.map(|sum| sum / n.max(1) as f64)
+        sums.map(|sum| self.mean(sum))
+    }
+
+    /// The scales of the blocks, for methods that do all their work in one pass.
+    #[inline]
+    pub(crate) fn scales(&self) -> &[Scale] {
+        &self.scales
+    }
+
+    /// Mean over all components of what was summed over blocks.
+    #[inline]
+    pub(crate) fn mean(&self, sum: Lanes) -> f64 {
+        sum.sum() * self.inverse_dim
     }
 
     /// The component whose error is largest against its tolerance.
     pub(crate) fn worst(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> Option<usize> {
-        let scaled = |i: usize| (error[i] / (self.absolute[i] + self.relative[i] * y0[i].abs().max(y1[i].abs()))).abs();
+        let scaled = |i: usize| {
+            let Scale { relative, absolute } = self.scales[i / LANES];
+            let size = y0[i].abs().max(y1[i].abs());
+            (error[i] / (absolute.0[i % LANES] + relative.0[i % LANES] * size)).abs()
+        };
         (0..error.len()).max_by(|&i, &j| scaled(i).total_cmp(&scaled(j)))
     }
 }

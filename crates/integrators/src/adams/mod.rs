@@ -1,13 +1,23 @@
 //! The method of Adams with variable order and variable step.
 
-use crate::sums::add;
+mod coefficients;
+
+use crate::lanes::{LANES, Lanes, blocks};
 use crate::{Counted, EvalError, Method, Ode, SettingsError, Step, Weights};
+use coefficients::{Coefficients, Past};
 
 /// Highest order of the predictor.
 const MOST: usize = 12;
 
+/// Most differences that are kept.
+const DEPTH: usize = MOST + 1;
+
 /// Part of the tolerance that the next step aims at. Found by trial: ½, the value of STEP, throws more steps away than it saves.
 const AIM: f64 = 0.25;
+
+/// Growth of a step between these bounds is not worth the rougher history.
+const LEAST_SHRINKING: f64 = 0.95;
+const LEAST_GROWTH: f64 = 1.1;
 
 /// Adams' method in the form of Shampine and Gordon: order 2 to 13, 2 evaluations per step (predict, evaluate, correct, evaluate).
 ///
@@ -20,6 +30,8 @@ const AIM: f64 = 0.25;
 /// integrals of the Newton polynomials.
 #[derive(Debug, Clone)]
 pub struct Adams {
+    dim: usize,
+    inverse_dim: f64,
     /// Order k of the predictor in this attempt, and in the next.
     k: usize,
     next_k: usize,
@@ -29,47 +41,59 @@ pub struct Adams {
     starting: bool,
     /// Attempts refused since the last step.
     failures: u32,
-    /// tₙ − tₙ₋ⱼ, and 1 / (tₙ − tₙ₋ⱼ) here and after the attempt, j > 0.
-    back: [f64; MOST + 2],
-    inverse: [f64; MOST + 2],
-    inverse_new: [f64; MOST + 2],
-    /// Φⱼ(n), one vector after the other.
-    differences: Vec<f64>,
-    beta: [f64; MOST + 2],
-    g: [f64; MOST + 2],
-    /// Φₖ(n + 1) of the predicted state, then scratch.
-    top: Vec<f64>,
+    past: Past,
+    coefficients: Coefficients,
+    /// The differences at the newest point, and at the end of the attempt, block after block of components.
+    blocks: Vec<Block>,
+    blocks_new: Vec<Block>,
+    /// Start and prediction of the attempt, f at the state reached and in the attempt: all filled up to full blocks.
+    y: Vec<f64>,
+    predicted: Vec<f64>,
+    f: Vec<f64>,
     f_new: Vec<f64>,
-    /// Φₖ₋₁(n + 1) and Φₖ₋₂(n + 1) of the predicted state.
-    lower: [Vec<f64>; 2],
-    /// Norms of the error had this step been made with order k, k − 1, k − 2.
-    errors: [f64; 3],
-    /// Norm of the error expected at `next_k` with an unchanged step.
-    next_error: f64,
+    /// Squared norms (roots are costly) of the error had this step been made with order k, k − 1, k − 2.
+    squares: [f64; 3],
+    /// Squared norm of the error expected at `next_k` with an unchanged step.
+    next_square: f64,
     /// By how much the polynomial of the last step misses its beginning, once it is asked for.
     defect: Vec<f64>,
     defect_ready: bool,
 }
 
+/// The differences of four components at one point: Φⱼ = `tails[j]` + `highest`.
+///
+/// With Φₖ₊₁ = f − Σ βᵢ Φᵢ at the point before, i ≤ k, the differences are Φⱼ = Φₖ₊₁ + Σ βᵢ Φᵢ, j ≤ i ≤ k. Only Φₖ₊₁ depends on f: the
+/// sums are formed together with the prediction, and no further pass over the differences is needed when f is known.
+#[derive(Debug, Clone, Default)]
+struct Block {
+    /// Σ βᵢ Φᵢ at the point before, j ≤ i ≤ k.
+    tails: [Lanes; DEPTH + 1],
+    /// Φₖ₊₁.
+    highest: Lanes,
+    /// 1 / tolerance.
+    inverse_scale: Lanes,
+}
+
 impl Default for Adams {
     fn default() -> Self {
         Self {
+            dim: 0,
+            inverse_dim: 1.0,
             k: 1,
             next_k: 1,
             depth: 1,
             starting: true,
             failures: 0,
-            back: [0.0; MOST + 2],
-            inverse: [0.0; MOST + 2],
-            inverse_new: [0.0; MOST + 2],
-            differences: Vec::new(),
-            beta: [0.0; MOST + 2],
-            g: [0.0; MOST + 2],
-            top: Vec::new(),
+            past: Past::default(),
+            coefficients: Coefficients::default(),
+            blocks: Vec::new(),
+            blocks_new: Vec::new(),
+            y: Vec::new(),
+            predicted: Vec::new(),
+            f: Vec::new(),
             f_new: Vec::new(),
-            lower: [Vec::new(), Vec::new()],
-            errors: [0.0; 3],
-            next_error: 1.0,
+            squares: [0.0; 3],
+            next_square: 1.0,
             defect: Vec::new(),
             defect_ready: false,
         }
@@ -77,71 +101,145 @@ impl Default for Adams {
 }
 
 impl Adams {
-    /// βⱼ and gⱼ for a step h with order k (Hairer, Nørsett, Wanner I, eq. III.5.9 and III.5.11-13).
-    fn find_coefficients(&mut self, h: f64) {
-        let count = self.depth.min(self.k + 1);
-        for j in 1..=count {
-            self.inverse_new[j] = 1.0 / (h + self.back[j - 1]);
-        }
-        self.beta[0] = 1.0;
-        for j in 1..self.depth.min(self.k + 1) {
-            self.beta[j] = self.beta[j - 1] * (h + self.back[j - 1]) * self.inverse[j];
-        }
-        // c[q] is c_{j, q + 1}, of which q <= count - j is needed; a loop of constant length is faster than one of the right length.
-        let mut c: [f64; MOST + 3] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
-        self.g[0] = c[0];
-        for j in 1..=count {
-            let ratio = h * self.inverse_new[j];
-            for q in 0..MOST + 2 {
-                c[q] -= ratio * c[q + 1];
-            }
-            self.g[j] = c[0];
-        }
-    }
-
     /// y + ∫ of the polynomial through the newest derivatives, from the newest point to a distance `s` from it.
     fn continue_by(&self, s: f64, y: &mut [f64]) {
         let count = self.depth.min(self.k + 1);
-        // i[q] is β_j c_{j, q + 1} of the step s; formed without the quotients that vanish at the points themselves.
-        let mut i: [f64; MOST + 3] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
-        let mut terms = [(0, 0.0); MOST + 1];
-        terms[0] = (0, i[0]);
-        for (j, term) in terms.iter_mut().enumerate().take(count).skip(1) {
-            for q in 0..count - j {
-                i[q] = ((s + self.back[j - 1]) * i[q] - s * i[q + 1]) * self.inverse[j];
+        let integrals = self.past.integrals(s, count);
+        for (block, y) in self.blocks.iter().zip(y.chunks_mut(LANES)) {
+            let mut change = Lanes::ZERO;
+            for (&tail, &integral) in block.tails.iter().zip(&integrals[..count]) {
+                change += integral * (tail + block.highest);
             }
-            *term = (j, i[0]);
+            (Lanes::load(y) + change).store(y);
         }
-        add(y, s, &terms[..count], &self.differences);
     }
 
-    /// Error of a step of order k, from the mean square of its Φₖ: h (gₖ − gₖ₋₁) Φₖ.
-    fn error_norm(&self, h: f64, k: usize, mean_square: f64) -> f64 {
-        (h * (self.g[k] - self.g[k - 1])).abs() * mean_square.sqrt()
+    /// Predicts y + h Σ gⱼ βⱼ Φⱼ(n), j < k.
+    fn predict(&mut self, h: f64) {
+        let k = self.k;
+        let (beta, g) = (&self.coefficients.beta[..k], &self.coefficients.g[..k]);
+        // Φₖ(n) exists only if so many points are known.
+        let beta_k = if self.depth > k { self.coefficients.beta[k] } else { 0.0 };
+        let states = self.y.as_chunks().0.iter().zip(self.predicted.as_chunks_mut().0);
+        let blocks = self.blocks.iter().zip(&mut self.blocks_new);
+        for ((block, new), (&y, predicted)) in blocks.zip(states) {
+            let mut sum = beta_k * (block.tails[k] + block.highest);
+            let mut integral = Lanes::ZERO;
+            (new.tails[k], new.tails[k + 1]) = (sum, Lanes::ZERO);
+            let tails = block.tails[..k].iter().zip(&mut new.tails[..k]);
+            // Backward, so that small terms come first.
+            for (((&tail, tail_new), &beta), &g) in tails.zip(beta).zip(g).rev() {
+                let term = beta * (tail + block.highest);
+                sum += term;
+                integral += g * term;
+                *tail_new = sum;
+            }
+            *predicted = (Lanes(y) + h * integral).0;
+        }
     }
 
-    /// Order of the next step after an accepted one, and the error to expect of it (Shampine and Gordon, chapter 7).
-    fn choose_order(&mut self, step: Step<'_>, weights: &Weights, y_new: &[f64]) -> (usize, f64) {
-        let (k, [error, lower, lowest]) = (self.k, self.errors);
-        if self.starting && k < MOST && (k == 1 || lower > error) {
-            return (k + 1, error);
+    /// Corrects the prediction with f there, and estimates the errors at the orders k, k − 1 and k − 2.
+    fn correct(&mut self, h: f64, weights: &Weights, y_new: &mut [f64], error: &mut [f64]) {
+        let (k, g) = (self.k, &self.coefficients.g);
+        // With k = 1 the lower orders do not exist; what is computed for them is not used.
+        let (below, lowest) = (k - 1, k.saturating_sub(2));
+        let (integral, miss) = (h * g[k], h * (g[k] - g[k - 1]));
+        let mut sums = [Lanes::ZERO; 3];
+        let blocks = self.blocks_new.iter_mut().zip(weights.scales());
+        let states = self.y.as_chunks().0.iter().zip(self.predicted.as_chunks().0);
+        let results = y_new.chunks_mut(LANES).zip(error.chunks_mut(LANES));
+        let all = blocks.zip(states).zip(self.f_new.as_chunks().0).zip(results);
+        for ((((block, scale), (&y, &predicted)), &f), (y_new, error)) in all {
+            // The differences had the step been closed with this f.
+            let highest = Lanes(f) - block.tails[0];
+            let phi_k = block.tails[k] + highest;
+            let corrected = Lanes(predicted) + integral * phi_k;
+            corrected.store(y_new);
+            (miss * phi_k).store(error);
+            let inverse_scale = scale.inverse(Lanes(y), corrected);
+            block.inverse_scale = inverse_scale;
+            sums[0] += (inverse_scale * phi_k).squared();
+            sums[1] += (inverse_scale * (block.tails[below] + highest)).squared();
+            sums[2] += (inverse_scale * (block.tails[lowest] + highest)).squared();
+        }
+        self.squares = std::array::from_fn(|m| {
+            if m < k {
+                self.squared_error(h, k - m, weights.mean(sums[m]))
+            } else {
+                0.0
+            }
+        });
+    }
+
+    /// Makes the end of the attempt the newest point; returns the mean square of its Φₖ₊₁.
+    fn update(&mut self) -> f64 {
+        std::mem::swap(&mut self.f, &mut self.f_new);
+        std::mem::swap(&mut self.blocks, &mut self.blocks_new);
+        let mut square = Lanes::ZERO;
+        for (block, &f) in self.blocks.iter_mut().zip(self.f.as_chunks().0) {
+            block.highest = Lanes(f) - block.tails[0];
+            square += (block.inverse_scale * block.highest).squared();
+        }
+        square.sum() * self.inverse_dim
+    }
+
+    /// Squared error of a step of order k, from the mean square of its Φₖ: h (gₖ − gₖ₋₁) Φₖ.
+    fn squared_error(&self, h: f64, k: usize, mean_square: f64) -> f64 {
+        let miss = h * (self.coefficients.g[k] - self.coefficients.g[k - 1]);
+        miss * miss * mean_square
+    }
+
+    /// Order of the next step after an accepted one, and the squared error to expect of it (Shampine and Gordon, chapter 7).
+    ///
+    /// `mean_square` is that of the highest difference.
+    fn choose_order(&mut self, h: f64, mean_square: f64) -> (usize, f64) {
+        let (k, [own, lower, lowest]) = (self.k, self.squares);
+        if self.starting && k < MOST && (k == 1 || lower > own) {
+            return (k + 1, own);
         }
         self.starting = false;
-        if (k > 2 && lower.max(lowest) <= error) || (k == 2 && lower <= 0.5 * error) {
+        // Order 1 and 2 are exchanged only if this halves the error.
+        let half = 0.25 * own;
+        if (k > 2 && lower.max(lowest) <= own) || (k == 2 && lower <= half) {
             return (k - 1, lower);
         }
         if k == MOST || self.depth < k + 2 {
-            return (k, error);
+            return (k, own);
         }
-        let n = self.f_new.len();
-        let [square] = weights.mean_squares(step.y, y_new, [&self.differences[(k + 1) * n..(k + 2) * n]]);
-        let higher = self.error_norm(step.h, k + 1, square);
+        // The highest difference is Φₖ₊₁.
+        let higher = self.squared_error(h, k + 1, mean_square);
         match k {
-            1 if higher < 0.5 * error => (2, higher),
-            2.. if lower <= error.min(higher) => (k - 1, lower),
-            2.. if higher < error => (k + 1, higher),
-            _ => (k, error),
+            1 if higher < half => (2, higher),
+            2.. if lower <= own.min(higher) => (k - 1, lower),
+            2.. if higher < own => (k + 1, higher),
+            _ => (k, own),
         }
+    }
+
+    /// Forgets all but the newest point.
+    fn forget(&mut self) {
+        (self.next_k, self.depth) = (1, 1);
+        self.past.clear(&mut self.coefficients);
+    }
+}
+
+/// (x²)^(1/2n), but 1 without much work where it lies between `LEAST_SHRINKING` and `LEAST_GROWTH`.
+fn factor(x_squared: f64, n: usize) -> f64 {
+    const fn squared_powers(x: f64) -> [f64; MOST + 2] {
+        let mut powers = [1.0; MOST + 2];
+        let mut n = 1;
+        while n < powers.len() {
+            powers[n] = x * x * powers[n - 1];
+            n += 1;
+        }
+        powers
+    }
+    const SHRINKING: [f64; MOST + 2] = squared_powers(LEAST_SHRINKING);
+    const GROWTH: [f64; MOST + 2] = squared_powers(LEAST_GROWTH);
+    if (SHRINKING[n]..GROWTH[n]).contains(&x_squared) {
+        1.0
+    } else {
+        x_squared.powf(0.5 / n as f64)
     }
 }
 
@@ -152,17 +250,25 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
 
     fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
         let n = problem.dim();
-        self.differences = vec![0.0; n * (MOST + 1)];
-        let [lower, lowest] = &mut self.lower;
-        for vector in [&mut self.top, &mut self.f_new, &mut self.defect, lower, lowest] {
-            *vector = vec![0.0; n];
+        let blocks = blocks(n);
+        (self.dim, self.inverse_dim) = (n, 1.0 / n.max(1) as f64);
+        self.blocks = vec![Block::default(); blocks];
+        self.blocks_new = self.blocks.clone();
+        for vector in [&mut self.y, &mut self.predicted, &mut self.f, &mut self.f_new] {
+            *vector = vec![0.0; LANES * blocks];
         }
+        self.defect = vec![0.0; n];
         Ok(())
     }
 
     fn restart(&mut self, problem: &mut Counted<'_, P>, t: f64, y: &[f64]) -> Result<(), EvalError> {
-        (self.k, self.next_k, self.depth, self.starting, self.failures) = (1, 1, 1, true, 0);
-        problem.rhs(t, y, &mut self.differences[..y.len()])
+        self.forget();
+        (self.k, self.starting, self.failures) = (1, true, 0);
+        problem.rhs(t, y, &mut self.f[..self.dim])?;
+        for (block, &f) in self.blocks.iter_mut().zip(self.f.as_chunks().0) {
+            (block.tails[0], block.highest) = (Lanes::ZERO, Lanes(f));
+        }
+        Ok(())
     }
 
     fn attempt(
@@ -173,45 +279,14 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
         y_new: &mut [f64],
         error: &mut [f64],
     ) -> Result<f64, EvalError> {
-        let Step { t, h, y } = step;
+        let n = self.dim;
         self.k = self.next_k;
-        let k = self.k;
-        self.find_coefficients(h);
-        let (beta, g) = (&self.beta, &self.g);
-
-        // Predict: p = yₙ + h Σ gⱼ βⱼ Φⱼ(n); evaluate.
-        let terms: [(usize, f64); MOST] = std::array::from_fn(|j| (j, g[j] * beta[j]));
-        y_new.copy_from_slice(y);
-        add(y_new, h, &terms[..k], &self.differences);
-        problem.rhs(t + h, y_new, &mut self.f_new)?;
-
-        // Φₖ(n + 1) = f(p) − Σ βⱼ Φⱼ(n); correct.
-        let terms: [(usize, f64); MOST] = std::array::from_fn(|j| (j, beta[j]));
-        self.top.copy_from_slice(&self.f_new);
-        add(&mut self.top, -1.0, &terms[..k], &self.differences);
-        add(y_new, h, &[(0, g[k])], &self.top);
-        error.fill(0.0);
-        add(error, h, &[(0, g[k] - g[k - 1])], &self.top);
-
-        // Φₖ₋₁(n + 1) = Φₖ(n + 1) + βₖ₋₁ Φₖ₋₁(n) and so on.
-        let [lower, lowest] = &mut self.lower;
-        lower.copy_from_slice(&self.top);
-        if k > 1 {
-            add(lower, 1.0, &[(k - 1, beta[k - 1])], &self.differences);
-        }
-        lowest.copy_from_slice(lower);
-        if k > 2 {
-            add(lowest, 1.0, &[(k - 2, beta[k - 2])], &self.differences);
-        }
-        let squares = weights.mean_squares(y, y_new, [&self.top, lower, lowest]);
-        self.errors = std::array::from_fn(|m| {
-            if m < k {
-                self.error_norm(h, k - m, squares[m])
-            } else {
-                0.0
-            }
-        });
-        Ok(self.errors[0])
+        self.coefficients.find(&self.past, step.h, self.depth.min(self.k + 1));
+        self.y[..n].copy_from_slice(step.y);
+        self.predict(step.h);
+        problem.rhs(step.t + step.h, &self.predicted[..n], &mut self.f_new[..n])?;
+        self.correct(step.h, weights, y_new, error);
+        Ok(self.squares[0].sqrt())
     }
 
     fn close(
@@ -221,57 +296,41 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
         y_new: &[f64],
         _projected: bool,
     ) -> Result<&[f64], EvalError> {
-        problem.rhs(step.t + step.h, y_new, &mut self.f_new)?;
-        Ok(&self.f_new)
+        let f_new = &mut self.f_new[..self.dim];
+        problem.rhs(step.t + step.h, y_new, f_new)?;
+        Ok(f_new)
     }
 
-    fn accept(&mut self, step: Step<'_>, weights: &Weights, y_new: &[f64]) {
-        // Φ₀(n + 1) = f, Φⱼ₊₁(n + 1) = Φⱼ(n + 1) − βⱼ Φⱼ(n).
-        let n = y_new.len();
-        self.depth = (self.depth + 1).min(self.k + 2).min(MOST + 1);
-        self.top.copy_from_slice(&self.f_new);
-        for (phi, beta) in self
-            .differences
-            .chunks_exact_mut(n.max(1))
-            .zip(self.beta)
-            .take(self.depth)
-        {
-            for (old, new) in phi.iter_mut().zip(&mut self.top) {
-                (*old, *new) = (*new, *new - beta * *old);
-            }
-        }
-        for j in (1..self.depth).rev() {
-            self.back[j] = self.back[j - 1] + step.h;
-        }
-        self.inverse = self.inverse_new;
+    fn accept(&mut self, h: f64) {
+        self.depth = (self.depth + 1).min(self.k + 2).min(DEPTH);
+        let mean_square = self.update();
+        self.past.step(h, &self.coefficients, self.depth);
         self.failures = 0;
         self.defect_ready = false;
-        (self.next_k, self.next_error) = self.choose_order(step, weights, y_new);
+        (self.next_k, self.next_square) = self.choose_order(h, mean_square);
     }
 
     fn derivative(&self) -> &[f64] {
-        &self.differences[..self.f_new.len()]
+        &self.f[..self.dim]
     }
 
     fn next_step(&mut self, h: f64, error: f64) -> f64 {
-        let best = |error: f64, k: usize| (AIM / error.max(1e-14)).powf(1.0 / (k + 1) as f64);
+        let best = |square: f64, k: usize| factor(AIM * AIM / square.max(1e-28), k + 1);
         if error > 1.0 {
             self.starting = false;
             self.failures += 1;
             if self.failures > 2 {
                 // The history misleads.
-                (self.next_k, self.depth) = (1, 1);
-            } else if self.k > 1 && self.errors[1] <= error {
+                self.forget();
+            } else if self.k > 1 && self.squares[1] <= error * error {
                 self.next_k = self.k - 1;
             }
-            return h * best(error, self.k).clamp(0.25, 0.9);
+            return h * best(error * error, self.k).clamp(0.25, 0.9);
         }
-        match best(self.next_error, self.next_k) {
-            _ if self.starting => 2.0 * h,
-            // Small changes are not worth the rougher history.
-            factor if (0.95..1.1).contains(&factor) => h,
-            factor => h * factor.clamp(0.5, 2.0),
+        if self.starting {
+            return 2.0 * h;
         }
+        h * best(self.next_square, self.next_k).clamp(0.5, 2.0)
     }
 
     fn interpolate(
@@ -302,5 +361,98 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
 
     fn is_multistep(&self) -> bool {
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Integration, Progress, Settings};
+
+    /// Five components, so that one block is full and one is not; it stops being smooth now and then, so that steps are refused.
+    struct Swing;
+
+    impl Ode for Swing {
+        fn dim(&self) -> usize {
+            5
+        }
+        fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+            let kick = if (t / 3.0).fract() < 0.5 { 1.0 } else { 1.1 };
+            dy.copy_from_slice(&[y[1], -kick * y[0].sin(), y[3], -4.0 * y[2], t.sin()]);
+            Ok(())
+        }
+    }
+
+    /// Φⱼ(n) = f[tₙ, …, tₙ₋ⱼ] (tₙ − tₙ₋₁) … (tₙ − tₙ₋ⱼ), j < `count`, from divided differences (Hairer, Nørsett, Wanner I, eq. III.5.6);
+    /// and the same with all signs alike, of which rounding is a small part.
+    fn differences(points: &[(f64, f64)], count: usize) -> Vec<(f64, f64)> {
+        let newest = points.len() - 1;
+        let back = |j: usize| points[newest].0 - points[newest - j].0;
+        let latest = points.iter().rev().take(count);
+        let mut divided: Vec<(f64, f64)> = latest.map(|&(_, f)| (f, f.abs())).collect();
+        let (mut phi, mut product) = (vec![divided[0]], 1.0);
+        for j in 1..count {
+            for i in 0..count - j {
+                let (gap, (next, next_size)) = (back(i + j) - back(i), divided[i + 1]);
+                divided[i] = ((divided[i].0 - next) / gap, (divided[i].1 + next_size) / gap);
+            }
+            product *= back(j);
+            phi.push((divided[0].0 * product, divided[0].1 * product));
+        }
+        phi
+    }
+
+    #[test]
+    fn tails_are_differences() {
+        let y0 = [1.0, 0.5, 0.0, 2.0, 0.0];
+        let settings = Settings::tolerances(1e-8, 1e-8);
+        let mut run = Integration::new(Swing, Adams::default(), 0.0, &y0, settings).expect("good settings");
+        let (mut points, mut y, mut highest_order) = (Vec::new(), [0.0; 5], 0);
+        loop {
+            let progress = run.advance(30.0).expect("no singularity");
+            let (from, to) = run.last_step();
+            let method = run.method();
+            if points.is_empty() {
+                let mut start = [0.0; 5];
+                Swing.rhs(from, &y0, &mut start).expect("never fails");
+                points.push((from, start.to_vec()));
+            }
+            points.push((to, method.f[..5].to_vec()));
+            highest_order = highest_order.max(method.k);
+            for i in 0..5 {
+                let component: Vec<_> = points.iter().map(|(t, f)| (*t, f[i])).collect();
+                let block = &method.blocks[i / LANES];
+                for (j, (expected, size)) in differences(&component, method.depth).into_iter().enumerate() {
+                    let found = (block.tails[j] + block.highest).0[i % LANES];
+                    let rounding = 100.0 * f64::EPSILON * size.max(1.0);
+                    assert!(
+                        (found - expected).abs() < rounding,
+                        "{j} at {to}: {found:e}, {expected:e} ± {rounding:e}"
+                    );
+                }
+            }
+            // The polynomial begins where the step began, but for the defect of the size of the error.
+            run.interpolate(from + 1e-9 * (to - from), &mut y).expect("inside");
+            assert!(run.method().defect.iter().all(|defect| defect.abs() < 1e-6));
+            if matches!(progress, Progress::Done { .. }) {
+                break;
+            }
+        }
+        assert!(highest_order > 8 && run.statistics().rejected > 10);
+    }
+
+    #[test]
+    fn factors() {
+        for n in 2..=MOST + 1 {
+            for x in [1e-10, 0.3, 0.9, 1.0, 1.5, 2.0, 7.0, 1e4] {
+                let exact = f64::powf(x, 1.0 / n as f64);
+                let expected = if (LEAST_SHRINKING..LEAST_GROWTH).contains(&exact) {
+                    1.0
+                } else {
+                    exact
+                };
+                assert!((factor(x * x, n) - expected).abs() < 1e-13 * expected);
+            }
+        }
     }
 }

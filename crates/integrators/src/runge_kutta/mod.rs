@@ -236,7 +236,7 @@ impl<P: Ode + ?Sized, T: Tableau> Method<P> for RungeKutta<T> {
         Ok(&self.stages[last])
     }
 
-    fn accept(&mut self, _step: Step<'_>, _weights: &Weights, _y_new: &[f64]) {
+    fn accept(&mut self, _h: f64) {
         self.moved_on = true;
         self.dense_ready = false;
     }
