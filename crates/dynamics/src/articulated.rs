@@ -2,7 +2,7 @@
 //! inward and one outward walk, at a cost linear in the number of links.
 
 use crate::columns::Columns;
-use crate::composite::along;
+use crate::composite::{ROUNDING, along};
 use crate::symmetric::{SpatialInertia, Symmetric};
 use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Twist, Wrench};
 use nalgebra::{Matrix3, Vector3};
@@ -75,6 +75,9 @@ struct Pivot {
 pub(crate) struct Articulated {
     inertias: Vec<ArticulatedInertia>,
     pivots: Vec<Pivot>,
+    /// Largest mass and moment of inertia that took part in a node's inertia, times [`ROUNDING`]: pivots up to here are
+    /// rounding, the freedom moves no mass.
+    floors: Vec<(f64, f64)>,
     inverse_diagonal: Vec<f64>,
     wrenches: Vec<Wrench>,
     twists: Vec<Twist>,
@@ -90,6 +93,7 @@ impl Articulated {
         Self {
             inertias: vec![ArticulatedInertia::rigid(&SpatialInertia::ZERO); nodes],
             pivots: vec![pivot; nodes],
+            floors: vec![(0.0, 0.0); nodes],
             inverse_diagonal: vec![0.0; tree.speeds()],
             wrenches: vec![Wrench::zero(); nodes],
             twists: vec![Twist::zero(); nodes],
@@ -111,10 +115,15 @@ impl Articulated {
             *articulated = ArticulatedInertia::rigid(body);
         }
         self.wrenches.copy_from_slice(wrenches);
+        self.floors.fill((0.0, 0.0));
         for i in (1..nodes.len()).rev() {
             let (node, here) = (&nodes[i], &positions[i]);
             let mut inertia = self.inertias[i];
             let mut wrench = self.wrenches[i];
+            let floors = (
+                self.floors[i].0.max(ROUNDING * inertia.linear.trace()),
+                self.floors[i].1.max(ROUNDING * inertia.angular.trace()),
+            );
             if node.freedom != Freedom::None {
                 let u = match node.freedom {
                     Freedom::Linear => Wrench {
@@ -127,7 +136,11 @@ impl Articulated {
                     },
                 };
                 let pivot = along(node, here, &u);
-                if pivot.is_nan() || pivot <= 0.0 {
+                let floor = match node.freedom {
+                    Freedom::Linear => floors.0,
+                    _ => floors.1,
+                };
+                if pivot.is_nan() || pivot <= floor {
                     return Err((node.speed, pivot));
                 }
                 let inverse = 1.0 / pivot;
@@ -145,6 +158,8 @@ impl Articulated {
             if node.parent != 0 {
                 self.wrenches[node.parent] += wrench.shifted(&here.arm);
                 inertia.add_shifted_to(&here.arm, &mut self.inertias[node.parent]);
+                let target = &mut self.floors[node.parent];
+                *target = (target.0.max(floors.0), target.1.max(floors.1));
             }
         }
         Ok(())

@@ -8,6 +8,9 @@ use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Wrench};
 /// No speed: the end of a path to the ground.
 const NONE: usize = usize::MAX;
 
+/// Share of a mass or moment of inertia that counts as rounding of it.
+pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// Mass matrix and its factors.
 #[derive(Clone, Debug)]
 pub(crate) struct Composite {
@@ -16,6 +19,8 @@ pub(crate) struct Composite {
     below: Vec<usize>,
     /// Row-major lower triangle: the mass matrix, then `L` (unit diagonal not stored).
     matrix: Vec<f64>,
+    /// Pivots up to here are rounding: the freedom moves no mass.
+    floor: Vec<f64>,
     inverse_diagonal: Vec<f64>,
     /// Composite inertias, a node each.
     inertias: Vec<SpatialInertia>,
@@ -38,6 +43,7 @@ impl Composite {
             speeds: n,
             below,
             matrix: vec![0.0; n * n],
+            floor: vec![0.0; n],
             inverse_diagonal: vec![0.0; n],
             inertias: vec![SpatialInertia::ZERO; tree.nodes().len()],
         }
@@ -71,6 +77,11 @@ impl Composite {
                         force: here.axis.cross(&inertia.moment),
                     },
                 };
+                self.floor[node.speed] = ROUNDING
+                    * match node.freedom {
+                        Freedom::Linear => inertia.mass,
+                        _ => inertia.second.trace(),
+                    };
                 let row = &mut self.matrix[node.speed * n..(node.speed + 1) * n];
                 row[node.speed] = along(node, here, &force);
                 let (mut k, mut arm) = (node.parent, &here.arm);
@@ -102,7 +113,7 @@ impl Composite {
             let (above, rest) = self.matrix.split_at_mut(k * n);
             let row = &mut rest[..n];
             let pivot = row[k];
-            if pivot.is_nan() || pivot <= 0.0 {
+            if pivot.is_nan() || pivot <= self.floor[k] {
                 return Err((k, pivot));
             }
             let inverse = 1.0 / pivot;

@@ -50,6 +50,12 @@ impl Symmetric {
         }
     }
 
+    /// Sum of the diagonal.
+    #[inline]
+    pub fn trace(&self) -> f64 {
+        self.xx + self.yy + self.zz
+    }
+
     /// Product with a vector.
     #[inline]
     pub fn times(&self, v: &Vector3<f64>) -> Vector3<f64> {
