@@ -187,6 +187,7 @@ impl ReactionLoop {
                     } else {
                         DynamicsError::NotSettled {
                             time,
+                            speed,
                             residual: last_residual,
                             iterations: *iterations as usize,
                         }
