@@ -9,6 +9,7 @@ mod denavit_hartenberg;
 mod derivatives;
 mod energy;
 mod invariances;
+mod linkage_refusals;
 mod newton_euler;
 mod projection;
 mod puma560;

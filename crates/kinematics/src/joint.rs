@@ -4,7 +4,7 @@
 //! freedom each (a turn about an axis, a slide along one); between the steps of one joint there is nothing. The
 //! recursions then know two kinds of freedom and no kinds of joints, and a new joint is a new list of steps.
 
-use crate::Pose;
+use crate::{Pose, TreeError};
 use nalgebra::{Matrix3, Unit, Vector3};
 
 /// A joint between two links. Axes are unit vectors in the joint's frame on the predecessor.
@@ -107,13 +107,21 @@ impl Joint {
         list.into_iter().flatten()
     }
 
-    /// Whether every axis of the joint is a finite unit vector.
-    pub(crate) fn has_unit_axes(&self) -> bool {
+    /// Checks that every axis of the joint is a finite unit vector, and that those of a universal joint are not parallel.
+    ///
+    /// # Errors
+    /// [`TreeError::BadAxis`]. [`crate::Tree::attach`] checks by itself, [`crate::Closure::new`] trusts its caller.
+    pub fn validate(&self) -> Result<(), TreeError> {
         let unit = |a: &Unit<Vector3<f64>>| (a.norm() - 1.0).abs() < 1e-9;
-        match self {
+        let sound = match self {
             Joint::Revolute { axis } | Joint::Prismatic { axis } | Joint::Cylindrical { axis } => unit(axis),
             Joint::Universal { first, second } => unit(first) && unit(second) && first.cross(second).norm() > 1e-6,
             Joint::Fixed | Joint::SphericalZyx | Joint::Spherical => true,
+        };
+        if sound {
+            Ok(())
+        } else {
+            Err(TreeError::BadAxis { joint: *self })
         }
     }
 }

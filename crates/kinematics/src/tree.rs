@@ -124,9 +124,7 @@ impl Tree {
         if defect.is_nan() || defect > 1e-9 {
             return Err(TreeError::NotRigid { defect });
         }
-        if !joint.has_unit_axes() {
-            return Err(TreeError::BadAxis { joint });
-        }
+        joint.validate()?;
         let mut before = parent.0;
         let mut offset = placement;
         for step in joint.steps() {

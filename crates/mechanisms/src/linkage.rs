@@ -310,9 +310,19 @@ impl Linkage {
                 .validate()
                 .map_err(|source| BuildError::Inertia { link, source })?;
         }
-        let joints = self.joints.iter().map(|j| (&j.name, &j.predecessor, &j.successor));
-        let cuts = self.cuts.iter().map(|c| (&c.name, &c.predecessor, &c.successor));
-        for (name, predecessor, successor) in joints.chain(cuts) {
+        let joints = self
+            .joints
+            .iter()
+            .map(|j| (&j.name, &j.joint, &j.predecessor, &j.successor));
+        let cuts = self
+            .cuts
+            .iter()
+            .map(|c| (&c.name, &c.joint, &c.predecessor, &c.successor));
+        for (name, joint, predecessor, successor) in joints.chain(cuts) {
+            joint.validate().map_err(|source| BuildError::Joint {
+                joint: name.clone(),
+                source,
+            })?;
             for (side, mount) in [("predecessor", predecessor), ("successor", successor)] {
                 if mount.link.0.is_some_and(|k| k >= self.links.len()) {
                     let name = name.clone();
