@@ -136,8 +136,8 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
             return Ok(Progress::Done { t: self.t });
         }
         self.turn_toward(until);
-        self.restart_if_due(until)?;
         let goal = self.next_stop(until).unwrap_or(until);
+        self.restart_if_due(goal)?;
         let wanted = self.h.unwrap_or(f64::INFINITY);
         let mut refusal = None;
         loop {
@@ -249,7 +249,8 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         self.direction = direction;
     }
 
-    fn restart_if_due(&mut self, until: f64) -> Result<(), IntegrationError> {
+    /// Evaluates f at the start and chooses a first step, which evaluates f on the way to `goal`.
+    fn restart_if_due(&mut self, goal: f64) -> Result<(), IntegrationError> {
         if !self.restart_due {
             return Ok(());
         }
@@ -267,7 +268,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
             });
         }
         if self.h.is_none() || self.method.is_multistep() {
-            let limit = (until - t).abs().min(self.max_step);
+            let limit = (goal - t).abs().min(self.max_step);
             let scratch = [&mut self.y_new[..], &mut self.error[..]];
             let h = match self.first_step {
                 Some(h) => h,
@@ -298,17 +299,21 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
             .filter(|stop| (until - stop) * self.direction > 0.0 || *stop == until)
     }
 
-    /// Signed length and end of the next attempt: the wanted step, cut or stretched by at most 1 % (fixed: 1e-9) to end on `goal`.
+    /// Signed length and end of the next attempt: the wanted step, cut or stretched by at most 1 % to end on `goal`; a fixed or longest
+    /// step by 1e-9 only, so that rounding of t does not leave a splinter.
     fn cut(&self, goal: f64) -> (f64, f64) {
         let wanted = self.h.unwrap_or(f64::INFINITY);
-        let stretch = if self.method.fixed_step().is_some() {
-            1.0 + 1e-9
-        } else {
-            1.01
-        };
+        let longest = self.method.fixed_step().unwrap_or(f64::INFINITY).min(self.max_step);
         let left = goal - self.t;
-        if left.abs() <= stretch * wanted {
-            (left, goal)
+        if left.abs() <= (1.01 * wanted).min((1.0 + 1e-9) * longest) {
+            // Rounded so that t + h is not beyond the goal, where f may be another.
+            let beyond = (self.t + left - goal) * self.direction > 0.0;
+            let h = if beyond {
+                left - self.direction * (left.abs() - left.abs().next_down())
+            } else {
+                left
+            };
+            (h, goal)
         } else {
             let t_new = self.t + self.direction * wanted;
             (t_new - self.t, t_new)

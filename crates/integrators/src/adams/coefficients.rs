@@ -140,6 +140,32 @@ mod tests {
         g
     }
 
+    /// The coefficients of Adams and Bashforth: equal steps (Hairer, Nørsett, Wanner I, table III.1.1).
+    #[test]
+    fn equal_steps() {
+        let (mut past, mut coefficients) = (Past::default(), Coefficients::default());
+        for depth in 1..=9 {
+            coefficients.find(&past, 0.5, depth);
+            past.step(0.5, &coefficients, depth + 1);
+        }
+        let (beta, g) = (&coefficients.beta, &coefficients.g);
+        let table = [
+            1.0,
+            1.0 / 2.0,
+            5.0 / 12.0,
+            3.0 / 8.0,
+            251.0 / 720.0,
+            95.0 / 288.0,
+            19087.0 / 60480.0,
+            5257.0 / 17280.0,
+            1070017.0 / 3628800.0,
+        ];
+        for (j, expected) in table.into_iter().enumerate() {
+            assert!((g[j] - expected).abs() < 4.0 * f64::EPSILON, "{j}: {}", g[j]);
+            assert!((beta[j] - 1.0).abs() < 20.0 * f64::EPSILON, "{j}: {}", beta[j]);
+        }
+    }
+
     /// Steps of many lengths, with repetitions: as the recursion, and as if found anew.
     #[test]
     fn coefficients() {

@@ -75,17 +75,17 @@ fn assert_orders(found: [f64; 3], order: f64, margin: f64) {
 
 #[test]
 fn rk4() {
-    assert_orders(orders(Rk4::new, [0.1, 0.05, 0.02]), 4.0, 0.2);
+    assert_orders(orders(Rk4::new, [0.1, 0.05, 0.02]), 4.0, 0.05);
 }
 
 #[test]
 fn dormand_prince_5() {
-    assert_orders(orders(DormandPrince5::fixed, [0.2, 0.05, 0.03]), 5.0, 0.3);
+    assert_orders(orders(DormandPrince5::fixed, [0.1, 0.04, 0.03]), 5.0, 0.3);
 }
 
 #[test]
 fn dop853() {
-    assert_orders(orders(Dop853::fixed, [1.0, 0.5, 0.4]), 8.0, 0.6);
+    assert_orders(orders(Dop853::fixed, [1.0, 0.5, 0.4]), 8.0, 0.3);
 }
 
 #[test]
@@ -99,18 +99,18 @@ fn newmark() {
             },
         )
     };
-    assert_orders(orders(settled, [0.1, 0.1, 0.1]), 2.0, 0.1);
+    assert_orders(orders(settled, [0.05, 0.05, 0.05]), 2.0, 0.02);
     assert_orders(
-        orders(|step| Newmark::new(step, Corrector::Times(2)), [0.1, 0.1, 0.05]),
+        orders(|step| Newmark::new(step, Corrector::Times(2)), [0.05, 0.05, 0.05]),
         2.0,
-        0.2,
+        0.02,
     );
 }
 
 #[test]
 fn newmark_of_other_coefficients() {
     let damped = |step| Newmark::new(step, Corrector::Times(4)).with_coefficients(0.3025, 0.6);
-    assert_orders(orders(damped, [0.05, 0.05, 0.05]), 1.0, 0.2);
+    assert_orders(orders(damped, [0.01, 0.01, 0.01]), 1.0, 0.05);
 }
 
 /// Largest error of the interpolation at five places in each step of the run.
@@ -158,9 +158,9 @@ fn interpolation() {
         &|h| dense_error(Kink, Newmark::new(h, corrector), &Kink::START, Kink::exact),
         0.1,
     );
-    for (found, expected) in [(rk4, 4.0), (dp5, 5.0), (dop, 8.0), (newmark, 2.0)] {
+    for (found, expected, margin) in [(rk4, 4.0, 0.05), (dp5, 5.0, 0.3), (dop, 8.0, 0.4), (newmark, 2.0, 0.05)] {
         assert!(
-            (found - expected).abs() < 0.6,
+            (found - expected).abs() < margin,
             "local order {found}, expected {expected}"
         );
     }

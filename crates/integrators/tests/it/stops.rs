@@ -65,6 +65,121 @@ fn stops_are_hit_exactly() {
     check(Adams::default(), 1e-6);
 }
 
+/// z' = z, evaluated only between these bounds.
+struct Watched {
+    bounds: [f64; 2],
+}
+
+impl Ode for Watched {
+    fn dim(&self) -> usize {
+        1
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        let [from, to] = self.bounds;
+        assert!(from <= t && t <= to, "f was asked for at {t}, outside {from} to {to}");
+        dy[0] = y[0];
+        Ok(())
+    }
+}
+
+impl SecondOrder for Watched {
+    fn pairs(&self) -> usize {
+        0
+    }
+}
+
+/// Stops at the start and at the end, before and beyond them, twice the same, and so close that no number lies between. None is
+/// missed, and f is never asked for beyond the next one, not even for the choice of the first step.
+#[test]
+fn stops_of_all_kinds() {
+    fn check<M: Method<Watched>>(method: impl Fn() -> M, tolerance: f64, dear: u64) {
+        let (a, b, c) = (1.0_f64.next_up(), 1.5, 1.5_f64.next_up());
+        let inner = [a, b, c, c.next_up(), 1.5 + 1e-13, 2.0];
+        for backward in [false, true] {
+            let (start, end) = if backward { (2.25, 1.0) } else { (1.0, 2.25) };
+            let mut expected = inner.to_vec();
+            if backward {
+                expected.reverse();
+            }
+            expected.push(end);
+            let watched = Watched { bounds: [0.0, 0.0] };
+            let settings = Settings::tolerances(1e-9, 1e-9);
+            let run = Integration::new(watched, method(), start, &[1.0], settings).expect("good settings");
+            let run = run.with_stops(&[2.25, -4.0, 2.0, 7.0, 1.0]).expect("finite");
+            let mut run = run.with_stops(&inner).expect("finite");
+            let mut seen = Vec::new();
+            while seen.len() < expected.len() {
+                let (from, to) = (seen.last().copied().unwrap_or(start), expected[seen.len()]);
+                run.problem_mut().bounds = [f64::min(from, to), f64::max(from, to)];
+                match run.advance(end).expect("smooth") {
+                    Progress::Step { .. } => {}
+                    Progress::Stop { t } => {
+                        assert!(t != end);
+                        seen.push(t);
+                    }
+                    Progress::Done { t } => {
+                        seen.push(t);
+                        break;
+                    }
+                }
+            }
+            assert_eq!(seen, expected);
+            let (t, y) = run.state();
+            assert_eq!(t, end);
+            assert!((y[0] - f64::exp(end - start)).abs() < tolerance);
+            let evaluations = run.statistics().evaluations;
+            assert!(evaluations < dear, "{evaluations}");
+        }
+    }
+    check(|| Rk4::new(0.01), 1e-8, 800);
+    check(|| Newmark::new(0.001, Corrector::Times(3)), 1e-5, 6000);
+    check(DormandPrince5::default, 1e-8, 800);
+    check(Dop853::default, 1e-8, 800);
+    check(Adams::default, 1e-8, 800);
+}
+
+/// t + h may round to beyond the stop; f must not be asked for there.
+#[test]
+fn no_evaluation_beyond_the_stop_by_rounding() {
+    for i in 0..500 {
+        let (start, stop) = (-1.0 + 0.0071 * f64::from(i), 0.1 + 0.013 * f64::from(i));
+        for (from, to) in [(start, stop), (stop, start)] {
+            let bounds = [start.min(stop), start.max(stop)];
+            let settings = Settings::default();
+            let mut run = Integration::new(Watched { bounds }, Adams::default(), from, &[1.0], settings).expect("good");
+            finish(&mut run, to);
+            let mut run = Integration::new(Watched { bounds }, Rk4::new(3.0), from, &[1.0], Settings::default());
+            finish(run.as_mut().expect("good"), to);
+        }
+    }
+}
+
+#[test]
+fn the_longest_step_is_not_stretched() {
+    let settings = Settings {
+        max_step: 0.1,
+        ..Settings::default()
+    };
+    let mut run = Integration::new(Damped, Dop853::default(), 0.0, &Damped::START, settings).expect("good settings");
+    loop {
+        let progress = run.advance(2.0 + 0.1005).expect("smooth");
+        let (from, to) = run.last_step();
+        assert!(to - from <= 0.1 * (1.0 + 1e-8));
+        if matches!(progress, Progress::Done { .. }) {
+            break;
+        }
+    }
+    // Nor does rounding leave a splinter at the end.
+    let settings = Settings {
+        max_step: 0.1,
+        first_step: Some(0.1),
+        ..Settings::default()
+    };
+    let mut run = Integration::new(Damped, Dop853::default(), 0.0, &Damped::START, settings).expect("good settings");
+    finish(&mut run, 1.0);
+    assert_eq!(run.statistics().accepted, 10);
+}
+
 #[test]
 fn a_stop_at_a_kink_saves_work() {
     let kinked = || {
