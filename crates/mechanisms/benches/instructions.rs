@@ -5,7 +5,8 @@
 
 mod cases;
 
-use cases::{chain_case, lu7, rsrrr_case};
+use cases::{WholeRun, chain_case, lu7, rsrrr_case};
+use linkdyn_mechanisms::integrators::{Adams, Dop853};
 
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
@@ -16,6 +17,16 @@ fn main() {
     if name == "lu7" {
         let mut unit = lu7();
         (0..repeats).for_each(|_| unit());
+        return;
+    }
+    if let Some(method) = name.strip_prefix("run-") {
+        let run = WholeRun::rsrrr(false);
+        let once = || match method {
+            "dop853" => run.by(Dop853::default()),
+            _ => run.by(Adams::default()),
+        };
+        let evaluations = (0..repeats).map(|_| once().1).last();
+        println!("evaluations {}", evaluations.unwrap_or_default());
         return;
     }
     let mut case = match name.as_str() {

@@ -1,7 +1,10 @@
-//! States at which one evaluation is timed.
+//! States at which one evaluation is timed, and whole runs. Each bench uses some of them.
+
+#![allow(dead_code)]
 
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
 use linkdyn_mechanisms::dynamics::{Description, RigidInertia, System, Workspace};
+use linkdyn_mechanisms::integrators::{Integration, Method, Progress, Settings, Tolerance};
 use linkdyn_mechanisms::kinematics::{Joint, LinkId, Pose, Tree};
 use linkdyn_mechanisms::{Mechanism, Simulation};
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -78,5 +81,47 @@ pub fn lu7() -> impl FnMut() {
     move || {
         let x = std::hint::black_box(a).lu().solve(std::hint::black_box(&b));
         std::hint::black_box(x);
+    }
+}
+
+/// The whole RSRRR scene without output.
+pub struct WholeRun {
+    mechanism: Mechanism,
+    y: Vec<f64>,
+    stops: Vec<f64>,
+}
+
+/// A tolerance at which the crank angle ends within 1e-9 of the reference.
+const TOLERANCE: f64 = 1e-10;
+
+impl WholeRun {
+    pub fn rsrrr(friction: bool) -> Self {
+        let scene = rsrrr(&Rsrrr {
+            friction,
+            ..Rsrrr::default()
+        });
+        let mechanism = scene.linkage.build().expect("the catalogue builds");
+        let (start, _) = mechanism.assemble(&scene.start).expect("the scene closes");
+        Self {
+            y: Simulation::new(&mechanism).state_vector(&start),
+            stops: mechanism.system().stop_times(),
+            mechanism,
+        }
+    }
+
+    /// Crank angle at 5 s, and evaluations.
+    pub fn by(&self, method: impl Method<Simulation>) -> (f64, u64) {
+        let mut simulation = Simulation::new(std::hint::black_box(&self.mechanism));
+        simulation.set_drift_tolerance(TOLERANCE);
+        let mut absolute = vec![TOLERANCE; simulation.coordinates() + simulation.speeds()];
+        absolute.push(f64::INFINITY);
+        let settings = Settings {
+            absolute: Tolerance::from(absolute),
+            ..Settings::tolerances(TOLERANCE, TOLERANCE)
+        };
+        let integration = Integration::new(simulation, method, 0.0, &self.y, settings).expect("valid settings");
+        let mut integration = integration.with_stops(&self.stops).expect("finite stops");
+        while !matches!(integration.advance(5.0).expect("smooth"), Progress::Done { .. }) {}
+        (integration.state().1[0], integration.statistics().evaluations)
     }
 }
