@@ -168,7 +168,7 @@ fn give_mass(blueprint: &mut Blueprint) {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(150))]
+    #![proptest_config(strategies::cases(300))]
 
     #[test]
     fn carried_and_cut_joints_of_trees_move_alike(

@@ -17,7 +17,7 @@ fn flat(t: &Matrix4<f64>) -> DVector<f64> {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(200))]
+    #![proptest_config(strategies::cases(1000))]
 
     #[test]
     fn both_conventions_are_products_of_two_turns_and_two_shifts(row in row()) {

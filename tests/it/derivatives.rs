@@ -57,7 +57,7 @@ impl Moving {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(60))]
+    #![proptest_config(strategies::cases(150))]
 
     #[test]
     fn transforms_are_the_poses(blueprint in strategies::tree(1..=20)) {

@@ -28,7 +28,7 @@ fn with_springs(blueprint: &Blueprint) -> System {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(100))]
+    #![proptest_config(strategies::cases(300))]
 
     #[test]
     fn kinetic_energy_is_half_the_mass_matrix_between_speeds(blueprint in strategies::tree(1..=12)) {

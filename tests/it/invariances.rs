@@ -145,7 +145,7 @@ fn signs(joint: &Joint, count: usize) -> &'static [f64] {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(100))]
+    #![proptest_config(strategies::cases(300))]
 
     #[test]
     fn the_order_of_attachment_does_not_matter(

@@ -2,6 +2,7 @@
 
 mod architecture;
 mod assembly;
+mod baumgarte;
 mod closed_form_loops;
 mod closures;
 mod cut_or_carried;

@@ -146,7 +146,7 @@ fn machines() -> impl Strategy<Value = Blueprint> {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(200))]
+    #![proptest_config(strategies::cases(1000))]
 
     #[test]
     fn on_every_link_reactions_and_loads_make_the_rate_of_momentum(blueprint in machines()) {

@@ -27,7 +27,7 @@ fn drift() -> impl Strategy<Value = Vec<f64>> {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(100))]
+    #![proptest_config(strategies::cases(300))]
 
     #[test]
     fn small_drift_is_removed_on_both_levels(

@@ -72,7 +72,7 @@ fn gap(a: &[f64], b: &[f64]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(150))]
+    #![proptest_config(strategies::cases(300))]
 
     #[test]
     fn loads_found_fulfil_the_loop_when_put_on_as_drives(case in rubbing(0.2)) {

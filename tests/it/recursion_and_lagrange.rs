@@ -91,7 +91,7 @@ fn check(blueprint: &Blueprint) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(200))]
+    #![proptest_config(strategies::cases(1000))]
 
     #[test]
     fn on_trees_both_recursions_solve_the_lagrange_equations(blueprint in strategies::tree(1..=20)) {

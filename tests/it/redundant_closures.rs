@@ -41,7 +41,7 @@ fn evaluate(description: &Description, q: &[f64], v: &[f64]) -> (System, Workspa
 }
 
 proptest! {
-    #![proptest_config(strategies::cases(100))]
+    #![proptest_config(strategies::cases(300))]
 
     #[test]
     fn a_four_bar_with_five_equations_moves_like_one_with_two(

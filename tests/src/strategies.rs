@@ -1,6 +1,6 @@
 //! Random machines. Everything is of the order of 1 (metres, kilograms, seconds), so that tolerances can be stated plainly.
 
-use crate::blueprint::{Blueprint, Part};
+use crate::blueprint::{Blueprint, Cut, Part};
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_kinematics::{Joint, Pose, Wrench};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
@@ -230,6 +230,21 @@ pub fn closed_with(
             );
         }
         blueprint.make_speeds_consistent();
+        blueprint
+    })
+}
+
+/// A tree tied to the ground by one cut joint that is open by anything up to some metres.
+pub fn open() -> impl Strategy<Value = Blueprint> {
+    let frames = (pose(0.5), pose(0.5), any::<bool>());
+    (tree(1..=6), joint(), frames, any::<Index>()).prop_map(|(mut blueprint, joint, (one, other, turned), place)| {
+        let link = Some(place.index(blueprint.parts.len()));
+        let (predecessor, successor) = if turned { (link, None) } else { (None, link) };
+        blueprint.cuts.push(Cut {
+            predecessor: (predecessor, one),
+            successor: (successor, other),
+            joint,
+        });
         blueprint
     })
 }
