@@ -1,6 +1,6 @@
 //! The RSRRR scene, run by any method, with all it observes.
 
-use linkdyn_integrators::{Integration, Method, Settings, Statistics, Tolerance};
+use linkdyn_integrators::{Integration, Method, Statistics};
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
 use linkdyn_mechanisms::{Mechanism, Observation, RunError, Scene, Simulation, State, run};
 use std::ops::ControlFlow;
@@ -52,24 +52,28 @@ pub struct Finished {
     pub end: Result<(), RunError>,
 }
 
-/// Tolerances for all of the state but the work, which follows the motion.
-pub fn tolerances(simulation: &Simulation, tolerance: f64) -> Settings {
-    let mut absolute = vec![tolerance; simulation.coordinates() + simulation.speeds()];
-    absolute.extend(simulation.has_work().then_some(f64::INFINITY));
-    Settings {
-        absolute: Tolerance::from(absolute),
-        ..Settings::tolerances(tolerance, tolerance)
-    }
-}
-
-/// Runs to `until` with rows each `every` seconds.
+/// Runs to `until` with rows each `every` seconds, relative and absolute tolerance the same.
 ///
 /// # Panics
 /// If the settings are refused.
 pub fn simulate(ready: &Ready, method: impl Method<Simulation>, tolerance: f64, until: f64, every: f64) -> Finished {
+    simulate_with(ready, method, (tolerance, tolerance), until, every)
+}
+
+/// As [`simulate`], with relative and absolute tolerance.
+///
+/// # Panics
+/// If the settings are refused.
+pub fn simulate_with(
+    ready: &Ready,
+    method: impl Method<Simulation>,
+    (relative, absolute): (f64, f64),
+    until: f64,
+    every: f64,
+) -> Finished {
     let simulation = Simulation::new(&ready.mechanism);
     let y = simulation.state_vector(&ready.start);
-    let settings = tolerances(&simulation, tolerance);
+    let settings = simulation.settings(relative, absolute);
     let stops = ready.mechanism.system().stop_times();
     let integration = Integration::new(simulation, method, 0.0, &y, settings).expect("valid settings");
     let mut integration = integration.with_stops(&stops).expect("finite stops");

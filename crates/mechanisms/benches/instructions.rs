@@ -6,7 +6,6 @@
 mod cases;
 
 use cases::{WholeRun, chain_case, lu7, rsrrr_case};
-use linkdyn_mechanisms::integrators::{Adams, Dop853};
 
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
@@ -22,8 +21,8 @@ fn main() {
     if let Some(method) = name.strip_prefix("run-") {
         let run = WholeRun::rsrrr(false);
         let once = || match method {
-            "dop853" => run.by(Dop853::default()),
-            _ => run.by(Adams::default()),
+            "dop853" => run.by_dop853(),
+            _ => run.by_adams(),
         };
         let evaluations = (0..repeats).map(|_| once().1).last();
         println!("evaluations {}", evaluations.unwrap_or_default());

@@ -9,7 +9,6 @@ mod cases;
 
 use cases::{WholeRun, rsrrr_case};
 use criterion::{Criterion, criterion_group, criterion_main};
-use linkdyn_mechanisms::integrators::{Adams, Dop853};
 
 fn runs(c: &mut Criterion) {
     for friction in [false, true] {
@@ -17,10 +16,10 @@ fn runs(c: &mut Criterion) {
         let mut case = rsrrr_case(friction);
         c.bench_function(&format!("{name}: one evaluation"), |b| b.iter(|| case.evaluate()));
         let run = WholeRun::rsrrr(friction);
-        println!("{name}: Adams (crank angle, evaluations) = {:?}", run.by(Adams::default()));
-        c.bench_function(&format!("{name}: run by Adams"), |b| b.iter(|| run.by(Adams::default())));
-        println!("{name}: Dop853 (crank angle, evaluations) = {:?}", run.by(Dop853::default()));
-        c.bench_function(&format!("{name}: run by Dop853"), |b| b.iter(|| run.by(Dop853::default())));
+        println!("{name}: Adams (crank angle, evaluations) = {:?}", run.by_adams());
+        c.bench_function(&format!("{name}: run by Adams"), |b| b.iter(|| run.by_adams()));
+        println!("{name}: Dop853 (crank angle, evaluations) = {:?}", run.by_dop853());
+        c.bench_function(&format!("{name}: run by Dop853"), |b| b.iter(|| run.by_dop853()));
     }
 }
 

@@ -37,7 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (reference, evaluations) = crank_angle(ReactionSolver::default(), Adams::default())?;
     println!("reference: {reference:.12} rad (Adams, 1e-12, {evaluations} evaluations)");
-    println!("{:>9} {:>8} {:>12} {:>12}", "step (s)", "k", "error (rad)", "evaluations");
+    println!(
+        "{:>9} {:>8} {:>12} {:>12}",
+        "step (s)", "k", "error (rad)", "evaluations"
+    );
     let corrector = Corrector::Until {
         change: 1e-12,
         at_most: 200,

@@ -2,83 +2,90 @@
 use linkdyn_mechanisms::catalogue::*;
 use linkdyn_mechanisms::integrators::*;
 use linkdyn_mechanisms::*;
-use std::ops::ControlFlow;
-use std::time::Instant;
+fn go<M: Method<Simulation>>(name: &str, m: M, rel: f64, tol: f64, vf: f64, drift: f64) {
+    let scene = rsrrr(&Rsrrr {
+        friction: false,
+        friction_scale: 1.0,
+    });
+    let mechanism = scene.linkage.build().unwrap();
+    let (state, _) = mechanism.assemble(&scene.start).unwrap();
+    let mut sim = Simulation::new(&mechanism);
+    sim.set_drift_tolerance(drift);
+    let y0 = sim.state_vector(&state);
+    let s = Settings {
+        absolute: Tolerance::from(vec![
+            tol,
+            tol,
+            tol,
+            tol,
+            vf * tol,
+            vf * tol,
+            vf * tol,
+            vf * tol,
+            f64::INFINITY,
+        ]),
+        ..Settings::tolerances(rel, tol)
+    };
+    let mut integ = Integration::new(sim, m, 0.0, &y0, s)
+        .unwrap()
+        .with_stops(&mechanism.system().stop_times())
+        .unwrap();
+    let mut worst = (0.0f64, 0.0);
+    let mut steps = vec![];
+    loop {
+        let p = integ.advance(5.0).unwrap();
+        steps.push((integ.state().0, integ.state().1[0]));
+        if let Progress::Done { .. } = p {
+            break;
+        }
+    }
+    let sim = Simulation::new(&mechanism);
+    let s = sim.settings(0.0, 1e-14);
+    let mut fine = Integration::new(sim, Dop853::default(), 0.0, &y0, s)
+        .unwrap()
+        .with_stops(&mechanism.system().stop_times())
+        .unwrap();
+    let mut y = y0.clone();
+    let mut k = 0;
+    while k < steps.len() {
+        fine.advance(5.0).unwrap();
+        while k < steps.len() && steps[k].0 <= fine.state().0 {
+            fine.interpolate(steps[k].0, &mut y).unwrap();
+            let e = (y[0] - steps[k].1).abs();
+            if e > worst.0 {
+                worst = (e, steps[k].0);
+            }
+            k += 1;
+        }
+    }
+    let st = integ.statistics();
+    println!(
+        "{name} rel {rel:e} tol {tol:e} vf {vf} drift {drift:e}: evals {} acc {} rej {} err max {:.2e} at {:.2} end {:e}",
+        st.evaluations - st.dense_evaluations,
+        st.accepted,
+        st.rejected,
+        worst.0,
+        worst.1,
+        integ.state().1[0] - 36.994786126823954
+    );
+}
 fn main() {
-    for friction in [false, true] {
-        let scene = rsrrr(&Rsrrr {
-            friction,
-            friction_scale: 1.0,
-        });
-        let mechanism = scene.linkage.build().unwrap();
-        let (state, assembly) = mechanism.assemble(&scene.start).unwrap();
-        println!("{assembly:?} {state:?}");
-        for tol in [1e-8, 1e-10, 1e-12] {
-            let sim = Simulation::new(&mechanism);
-            let y0 = sim.state_vector(&state);
-            let mut integ = Integration::new(sim, Dop853::default(), 0.0, &y0, Settings::tolerances(tol, tol))
-                .unwrap()
-                .with_stops(&mechanism.system().stop_times())
-                .unwrap();
-            let t0 = Instant::now();
-            let mut n = 0;
-            let mut worst = 0.0f64;
-            let mut b0 = None;
-            let mut viol = 0.0f64;
-            let mut fs = 0.0f64;
-            run(&mut integ, 5.0, 0.01, |o| {
-                n += 1;
-                let b = o.energy_balance();
-                b0.get_or_insert(b);
-                worst = worst.max((b - b0.unwrap()).abs());
-                viol = viol.max(o.violation.0);
-                fs = fs.max(o.multipliers.iter().map(|x| x * x).sum::<f64>().sqrt());
-                ControlFlow::Continue(())
-            })
-            .unwrap();
-            let el = t0.elapsed();
-            println!(
-                "tol {tol:e} {:?} psi {:?} rows {n} energy {worst:e} viol {viol:e} fS {fs} drift {:?} {:?} time {el:?}",
-                integ.statistics(),
-                integ.state().1,
-                integ.problem().worst(),
-                integ.problem().counters()
-            );
+    for (rel, tol) in [
+        (1e-8, 1e-8),
+        (3e-9, 3e-9),
+        (1e-9, 1e-9),
+        (1e-8, 1e-10),
+        (1e-8, 1e-11),
+        (1e-9, 1e-11),
+        (0.0, 1e-8),
+        (0.0, 3e-9),
+        (0.0, 1e-9),
+        (0.0, 3e-10),
+        (0.0, 1e-10),
+    ] {
+        for vf in [1.0, 10.0, 30.0] {
+            go("dop853", Dop853::default(), rel, tol, vf, 0.0);
         }
-        // ns per evaluation
-        let mut sim = Simulation::new(&mechanism);
-        let mut y = sim.state_vector(&state);
-        for (k, v) in y[4..8].iter_mut().enumerate() {
-            *v = 1.0 + k as f64;
-        }
-        let mut dy = y.clone();
-        let q = [1.2, 3.0, -1.2, 0.6];
-        y[..4].copy_from_slice(&q);
-        for _ in 0..3 {
-            let t0 = Instant::now();
-            let n = 1_000_000;
-            for _ in 0..n {
-                sim.rhs(1.0, std::hint::black_box(&y), &mut dy).unwrap();
-                std::hint::black_box(&dy);
-            }
-            println!(
-                "ns/eval {:?}  {:?}",
-                t0.elapsed().as_nanos() as f64 / n as f64,
-                sim.counters()
-            );
-        }
-        let a = nalgebra::SMatrix::<f64, 7, 7>::from_fn(|i, j| {
-            if i == j {
-                10.0
-            } else {
-                1.0 / (1.0 + i as f64 + 2.0 * j as f64)
-            }
-        });
-        let b = nalgebra::SVector::<f64, 7>::from_fn(|i, _| i as f64);
-        let t0 = Instant::now();
-        for _ in 0..1_000_000 {
-            std::hint::black_box(std::hint::black_box(a).lu().solve(std::hint::black_box(&b)));
-        }
-        println!("LU7 {} ns", t0.elapsed().as_nanos() as f64 / 1e6);
+        go("adams", Adams::default(), rel, tol, 10.0, 0.1 * tol);
     }
 }

@@ -16,7 +16,7 @@ pub use linkage::{JointHandle, LinkHandle, Linkage, Mount};
 pub use mechanism::{Mechanism, Start, State};
 pub use run::{RunError, run};
 pub use scene::Scene;
-pub use simulation::{Observation, Simulation, Worst};
+pub use simulation::{Observation, SPEED_SCALE, Simulation, Worst};
 
 pub use linkdyn_dynamics as dynamics;
 pub use linkdyn_friction as friction;

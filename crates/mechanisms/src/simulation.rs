@@ -3,7 +3,7 @@
 use crate::error::MotionError;
 use crate::mechanism::{Mechanism, State};
 use linkdyn_dynamics::{Counters, Energy, Reaction, Workspace};
-use linkdyn_integrators::{EvalError, Ode, SecondOrder};
+use linkdyn_integrators::{EvalError, Ode, SecondOrder, Settings, Tolerance};
 use linkdyn_kinematics::Wrench;
 
 /// A mechanism with scratch of its own; clone it to send it to another thread.
@@ -20,6 +20,10 @@ pub struct Simulation {
     drift_tolerance: f64,
     worst: Worst,
 }
+
+/// Absolute tolerance of speeds in units of that of coordinates \[1/s\]: about the speed at which linkages turn. On RSRRR this
+/// costs a quarter fewer evaluations for the same error of the crank angle than equal tolerances do.
+pub const SPEED_SCALE: f64 = 10.0;
 
 /// Worst figures met so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,6 +104,18 @@ impl Simulation {
     /// Whether the work stands at the end of the state vector.
     pub fn has_work(&self) -> bool {
         self.has_work
+    }
+
+    /// Tolerances for an integration: `relative` for all of the state, `absolute` for coordinates \[rad, m\], [`SPEED_SCALE`] times
+    /// that for speeds. The work at the end of the state follows the motion and is not controlled.
+    pub fn settings(&self, relative: f64, absolute: f64) -> Settings {
+        let mut components = vec![absolute; self.coordinates];
+        components.resize(self.coordinates + self.speeds, SPEED_SCALE * absolute);
+        components.extend(self.has_work.then_some(f64::INFINITY));
+        Settings {
+            absolute: Tolerance::from(components),
+            ..Settings::tolerances(relative, absolute)
+        }
     }
 
     /// Lets steps leave closure residuals and rates up to this size \[m, m/s, -\] instead of projecting every one; zero, the

@@ -1,9 +1,7 @@
 //! The integration methods by name, and the tolerances or steps that go with them.
 
 use linkdyn_mechanisms::Simulation;
-use linkdyn_mechanisms::integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, Method, Newmark, Rk4, Settings, Tolerance,
-};
+use linkdyn_mechanisms::integrators::{Adams, Corrector, Dop853, DormandPrince5, Method, Newmark, Rk4, Settings};
 use serde::Serialize;
 
 use crate::args::RunArgs;
@@ -16,7 +14,7 @@ pub struct Plan {
     pub method: String,
     /// Relative tolerance of adaptive methods.
     pub rtol: Option<f64>,
-    /// Absolute tolerance of adaptive methods.
+    /// Absolute tolerance of adaptive methods, for coordinates.
     pub atol: Option<f64>,
     /// Step of fixed-step methods \[s\].
     pub step: Option<f64>,
@@ -110,17 +108,9 @@ impl Plan {
         0.1 * self.atol.unwrap_or(0.0)
     }
 
-    /// Tolerances for a simulation; the work at the end of the state follows the motion and is not controlled.
+    /// Tolerances for a simulation.
     #[must_use]
     pub fn settings(&self, simulation: &Simulation) -> Settings {
-        let atol = self.atol.unwrap_or(TOLERANCE);
-        let mut absolute = vec![atol; simulation.coordinates() + simulation.speeds()];
-        if simulation.has_work() {
-            absolute.push(f64::INFINITY);
-        }
-        Settings {
-            absolute: Tolerance::from(absolute),
-            ..Settings::tolerances(self.rtol.unwrap_or(TOLERANCE), atol)
-        }
+        simulation.settings(self.rtol.unwrap_or(TOLERANCE), self.atol.unwrap_or(TOLERANCE))
     }
 }
