@@ -68,7 +68,7 @@ fn check(blueprint: &Blueprint) -> Result<(), TestCaseError> {
         if condition.rank == lambda.len() {
             let (a_dense, lambda_dense) = equations.solve(f.as_slice()).expect("regular");
             // Forward errors are backward errors times the condition of what is solved.
-            let allowed = 1e-13 + 1e-15 * condition.mass * condition.closure.powi(2);
+            let allowed = 1e-12 + 1e-15 * condition.product();
             let free = equations
                 .mass
                 .clone()

@@ -87,6 +87,28 @@ proptest! {
     }
 
     #[test]
+    fn a_cut_joint_given_twice_carries_half_each_time(blueprint in strategies::closed(3..=8, 1..=1)) {
+        let machine = blueprint.machine(Formulation::Recursive);
+        let equations = lagrange::equations(&machine.system, &machine.q, &machine.v);
+        let condition = condition(&equations);
+        prop_assume!(condition.is_some_and(|c| c.rank == equations.gamma.len() && c.closure < 3e3 && c.mass < 1e6));
+        let once = machine.evaluate();
+        let mut double = blueprint.clone();
+        double.cuts.extend(blueprint.cuts.clone());
+        let twice = double.machine(Formulation::Recursive).evaluate();
+        // Badly conditioned equations must not make the second set look independent.
+        prop_assert_eq!(twice.redundant(), once.multipliers().len());
+        let halves: Vec<f64> = once.multipliers().iter().map(|l| l / 2.0).collect();
+        let (one, two) = twice.multipliers().split_at(halves.len());
+        // Rounding of 1e-16 times the square of a condition of 3e3.
+        let scale = largest(&halves).max(1.0);
+        for half in [one, two] {
+            let gaps: Vec<f64> = half.iter().zip(&halves).map(|(a, b)| a - b).collect();
+            prop_assert!(largest(&gaps) < 1e-7 * scale, "{:e}", largest(&gaps) / scale);
+        }
+    }
+
+    #[test]
     fn multipliers_of_random_redundant_loops_are_of_smallest_norm(blueprint in strategies::closed(2..=5, 1..=2)) {
         let machine = blueprint.machine(Formulation::Recursive);
         let equations = lagrange::equations(&machine.system, &machine.q, &machine.v);

@@ -111,7 +111,8 @@ pub fn coordinates(joint: &Joint, raw: &Raw) -> Vec<f64> {
     }
 }
 
-/// A possible inertia: a rod or a wheel (bodies of revolution about their origins' axis) or an irregular body.
+/// A possible inertia: a rod or a wheel (bodies of revolution about their origins' axis), an irregular body, or one that looks
+/// like a body of revolution about z by its inertia about the origin, but has its centre of mass off that axis.
 pub fn inertia() -> impl Strategy<Value = RigidInertia> {
     let rod = (0.02..0.1, 0.2..1.0, direction())
         .prop_map(|(diameter, length, u)| RigidInertia::solid_cylinder(7850.0, diameter, length, &u));
@@ -120,7 +121,12 @@ pub fn inertia() -> impl Strategy<Value = RigidInertia> {
         com: Vector3::zeros(),
         about_com: Matrix3::identity() * (axial / 2.0 + more) + *u * u.transpose() * (axial / 2.0 - more),
     });
-    prop_oneof![2 => rod, 1 => wheel, 2 => irregular()]
+    let deceptive = RigidInertia {
+        mass: 2.0,
+        com: Vector3::new(0.5, 0.0, 0.0),
+        about_com: Matrix3::from_diagonal(&Vector3::new(1.0, 0.5, 1.0)),
+    };
+    prop_oneof![4 => rod, 2 => wheel, 4 => irregular(), 1 => Just(deceptive)]
 }
 
 /// An irregular body: three positive second moments `a`, `b`, `c` about turned axes make a possible inertia.

@@ -13,9 +13,9 @@ use crate::linear::{cholesky, cholesky_solve};
 /// A pivot of `S` below this share of the largest diagonal counts as zero: the equation is redundant. `S` holds squares, so
 /// this is a share of 1e-6 in the closure gradient.
 const REDUNDANT: f64 = 1e-12;
-/// Without pivoting, rounding grows with the condition of the equations before. A pivot below this share of its diagonal is
-/// looked at again with pivoting, which keeps rounding near 1e-16.
-const DOUBTFUL: f64 = 1e-8;
+/// Without pivoting, rounding of 1e-16 grows by the pivots before: two of this share of their diagonals leave 1e-6. A smaller
+/// pivot is looked at again with pivoting, which keeps rounding near 1e-16.
+const DOUBTFUL: f64 = 1e-5;
 /// A diagonal of `S` below this share of `trace(D^-1)` stands for levers of 1e-12 m: rounding of an equation that nothing moves.
 const NOTHING: f64 = 1e-24;
 
