@@ -54,17 +54,20 @@ fn check(blueprint: &Blueprint) -> Result<(), TestCaseError> {
     let Some(condition) = condition(&equations) else {
         return Err(TestCaseError::reject("rank in doubt"));
     };
-    prop_assume!(condition.mass < 1e6 && condition.closure < 300.0);
+    prop_assume!(condition.mass < 1e6 && condition.closure < 3e3);
     let f = generalised(blueprint, &reference);
     for formulation in FORMULATIONS {
         let work = blueprint.machine(formulation).evaluate();
         prop_assert_eq!(reference.system.equations() - work.redundant(), condition.rank);
         let a = DVector::from_column_slice(work.rates());
         let lambda = DVector::from_column_slice(work.multipliers());
-        // Backward stable elimination leaves some 1e-16 times the number of unknowns; the multipliers go through the square
-        // of the closures' condition, which is bounded above.
+        // Backward stable elimination leaves some 1e-16 times the number of unknowns. Multipliers in error by the square of the
+        // closures' condition push along what hardly moves, so that the condition itself remains.
         let worst = imbalance(&equations, &f, &a, &lambda);
-        prop_assert!(worst < 1e-12, "{formulation:?}: {worst:e}, {condition:?}");
+        prop_assert!(
+            worst < 1e-12_f64.max(1e-14 * condition.closure),
+            "{formulation:?}: {worst:e}, {condition:?}"
+        );
         if condition.rank == lambda.len() {
             let (a_dense, lambda_dense) = equations.solve(f.as_slice()).expect("regular");
             // Forward errors are backward errors times the condition of what is solved.

@@ -44,10 +44,12 @@ pub(crate) struct Multipliers {
     pub gamma: Vec<f64>,
     pub lambda: Vec<f64>,
     rank: usize,
+    /// Whether the factors are those with pivoting.
+    pivoted: bool,
     singular: Singular,
 }
 
-/// `S = F F^T` with F of fewer columns than rows.
+/// `S = F F^T` with F of as many columns as `S` has rank.
 #[derive(Clone, Debug)]
 struct Singular {
     /// F, m x rank, row-major with stride m.
@@ -67,6 +69,7 @@ impl Multipliers {
             gamma: vec![0.0; m],
             lambda: vec![0.0; m],
             rank: m,
+            pivoted: false,
             singular: Singular {
                 factor: vec![0.0; m * m],
                 gram: vec![0.0; m * m],
@@ -93,7 +96,7 @@ impl Multipliers {
     #[inline(always)]
     fn factor_sized(&mut self, m: usize, inward: &Columns, inverse_diagonal: &[f64]) {
         self.assemble(m, inward, inverse_diagonal);
-        self.rank = m;
+        (self.rank, self.pivoted) = (m, false);
         let floor = NOTHING * inverse_diagonal.iter().sum::<f64>();
         for j in 0..m {
             let (head, tail) = self.schur.split_at_mut(j * m);
@@ -167,7 +170,7 @@ impl Multipliers {
             }
         }
         cholesky(&mut s.gram, r);
-        self.rank = r;
+        (self.rank, self.pivoted) = (r, true);
     }
 
     /// Replaces `lambda` by `S^-1 lambda`; the shortest least-squares solution when `S` is singular.
@@ -178,7 +181,7 @@ impl Multipliers {
 
     #[inline(always)]
     fn solve_sized(&mut self, m: usize) {
-        if self.rank < m {
+        if self.pivoted {
             return self.solve_singular();
         }
         let (l, b) = (&self.schur[..m * m], &mut self.lambda[..m]);
