@@ -24,18 +24,13 @@ impl Columns {
         self.data.fill(0.0);
     }
 
-    /// Distance of two rows in [`Columns::flat`].
+    /// Distance of two rows in [`Columns::flat_mut`].
     #[inline]
     pub fn stride(&self) -> usize {
         self.stride
     }
 
     /// All numbers, row by row.
-    #[inline]
-    pub fn flat(&self) -> &[f64] {
-        &self.data
-    }
-
     #[inline]
     pub fn flat_mut(&mut self) -> &mut [f64] {
         &mut self.data

@@ -73,11 +73,17 @@ struct Side {
 impl Closure {
     /// Cuts `joint` between two frames. The joint's axes are those of the predecessor frame, as for
     /// [`Tree::attach`]; at zero joint coordinates both frames coincide.
+    ///
+    /// # Panics
+    /// If a link is not of this tree.
     pub fn new(tree: &Tree, predecessor: Attachment, successor: Attachment, joint: &Joint) -> Self {
         Self::with_rows(tree, predecessor, successor, rows_of(joint))
     }
 
     /// Closure from equations of one's own choice.
+    ///
+    /// # Panics
+    /// If a link is not of this tree.
     pub fn with_rows(tree: &Tree, predecessor: Attachment, successor: Attachment, rows: Vec<Row>) -> Self {
         let one: Vec<usize> = tree.path(predecessor.link).collect();
         let two: Vec<usize> = tree.path(successor.link).collect();
