@@ -24,8 +24,8 @@ fn main() {
             "dop853" => run.by_dop853(),
             _ => run.by_adams(),
         };
-        let evaluations = (0..repeats).map(|_| once().1).last();
-        println!("evaluations {}", evaluations.unwrap_or_default());
+        let evaluations = (0..repeats).fold(0, |_, _| once().1);
+        println!("evaluations {evaluations}");
         return;
     }
     let mut case = match name.as_str() {
