@@ -35,7 +35,7 @@ pub struct RunArgs {
     #[arg(long)]
     pub friction: bool,
     /// Factor on all coefficients of friction
-    #[arg(long, value_name = "FACTOR", value_parser = positive, default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
     pub friction_scale: f64,
     /// Find friction by this number of sweeps reactions - friction - accelerations from zero at each evaluation, instead of
     /// solving that loop (the paper's way)
@@ -96,6 +96,17 @@ fn count(text: &str) -> Result<usize, String> {
         Ok(k) if (1..=1000).contains(&k) => Ok(k),
         _ => Err("give a whole number from 1 to 1000".to_owned()),
     }
+}
+
+/// A factor on friction; beyond a thousand nothing moves at all.
+fn factor(text: &str) -> Result<f64, String> {
+    positive(text).and_then(|x| {
+        if x <= 1e3 {
+            Ok(x)
+        } else {
+            Err(format!("{x} is more than 1000"))
+        }
+    })
 }
 
 /// A number that is finite and greater than zero.

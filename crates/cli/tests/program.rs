@@ -173,13 +173,16 @@ fn wrong_names_and_options_tell_what_would_be_right() {
     let folder = folder();
     let out = folder.path().join("run");
     let out_text = out.to_string_lossy();
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 9] = [
         (&["rsrr"], "did you mean `rsrrr`"),
         (&["rsrrr", "--method", "adam"], "did you mean `adams`"),
         (&["rsrrr", "--method", "rk4", "--rtol", "1e-8"], "--step"),
         (&["rsrrr", "--step", "1e-3"], "rk4"),
         (&["rsrrr", "--iterations", "3"], "newmark"),
         (&["rsrrr", "--rtol", "0.1"], "too loose"),
+        (&["rsrrr", "--atol", "10"], "too loose"),
+        (&["rsrrr", "--every", "1e-12"], "--every"),
+        (&["rsrrr", "--friction", "--friction-scale", "1e300"], "1000"),
     ];
     for (words, expected) in cases {
         let words: Vec<&str> = ["run"]

@@ -17,6 +17,8 @@ pub struct Drift {
     pub velocity: f64,
     /// Whether coordinates or speeds were changed.
     pub changed: bool,
+    /// Largest closure residual left \[m, -\]: far above rounding where the state was too far away to be put back.
+    pub remaining: f64,
 }
 
 impl System {
@@ -37,6 +39,13 @@ impl System {
         if self.closures.is_empty() {
             return drift;
         }
+        // The metric is that of the last evaluation; a fresh workspace has none yet.
+        if work.counters.evaluations == 0 && self.evaluate(0.0, q, v, work).is_err() {
+            return Drift {
+                remaining: f64::INFINITY,
+                ..drift
+            };
+        }
         self.tree.positions(q, &mut work.positions);
         let size = work
             .positions
@@ -46,6 +55,7 @@ impl System {
         let mut factored = false;
         for iteration in 0..ITERATIONS {
             let residual = self.residual(work);
+            drift.remaining = residual;
             if iteration == 0 {
                 drift.position = residual;
             }

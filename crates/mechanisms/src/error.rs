@@ -138,7 +138,7 @@ pub enum StartError {
 
 /// Why a mechanism has no accelerations at a state, with the name of the coordinate that the cause speaks of.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{cause} (speed {speed} is that of `{coordinate}`)")]
+#[error("`{coordinate}` (speed {speed}): {cause}")]
 pub struct MotionError {
     /// The coordinate.
     pub coordinate: String,

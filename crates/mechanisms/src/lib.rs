@@ -14,9 +14,9 @@ pub use drive::{Drive, DriveFunction};
 pub use error::{BuildError, MotionError, StartError};
 pub use linkage::{JointHandle, LinkHandle, Linkage, Mount};
 pub use mechanism::{Mechanism, Start, State};
-pub use run::{RunError, run};
+pub use run::{MOST_ROWS, RunError, run, run_watched};
 pub use scene::Scene;
-pub use simulation::{Observation, SPEED_SCALE, Simulation, Worst};
+pub use simulation::{Observation, OffTheLoop, SPEED_SCALE, Simulation, Worst};
 
 pub use linkdyn_dynamics as dynamics;
 pub use linkdyn_friction as friction;

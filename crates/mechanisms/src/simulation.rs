@@ -2,9 +2,10 @@
 
 use crate::error::MotionError;
 use crate::mechanism::{Mechanism, State};
-use linkdyn_dynamics::{Counters, Energy, Reaction, Workspace};
+use linkdyn_dynamics::{Counters, Drift, Energy, Reaction, Workspace};
 use linkdyn_integrators::{EvalError, Ode, SecondOrder, Settings, Tolerance};
 use linkdyn_kinematics::Wrench;
+use thiserror::Error;
 
 /// A mechanism with scratch of its own; clone it to send it to another thread.
 ///
@@ -24,6 +25,17 @@ pub struct Simulation {
 /// Absolute tolerance of speeds in units of that of coordinates \[1/s\]: about the speed at which linkages turn. On RSRRR this
 /// costs a quarter fewer evaluations for the same error of the crank angle than equal tolerances do.
 pub const SPEED_SCALE: f64 = 10.0;
+
+/// Closure residual beyond which a step has left the mechanism \[m, -\]: projection takes drift, which is far smaller.
+pub(crate) const OFF_THE_LOOP: f64 = 1e-6;
+
+/// A step so long that its end could not be put back onto the loops.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("the step leaves the loops by {0:e}, too far to be put back; a shorter step may help")]
+pub struct OffTheLoop(
+    /// Largest closure residual that remained \[m, -\].
+    pub f64,
+);
 
 /// Worst figures met so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -144,18 +156,18 @@ impl Simulation {
         Ok(self.work.rates())
     }
 
-    /// Puts a state vector back onto the closures; returns whether it was changed.
-    pub fn put_on_closures(&mut self, y: &mut [f64]) -> bool {
+    /// Puts a state vector back onto the closures.
+    pub fn put_on_closures(&mut self, y: &mut [f64]) -> Drift {
         self.project_beyond(0.0, y)
     }
 
-    fn project_beyond(&mut self, tolerance: f64, y: &mut [f64]) -> bool {
+    fn project_beyond(&mut self, tolerance: f64, y: &mut [f64]) -> Drift {
         let (q, rest) = y.split_at_mut(self.coordinates);
         let (system, v) = (&self.mechanism.system, &mut rest[..self.speeds]);
         let drift = system.project_beyond(tolerance, q, v, &mut self.work);
         self.worst.position_drift = self.worst.position_drift.max(drift.position);
         self.worst.velocity_drift = self.worst.velocity_drift.max(drift.velocity);
-        drift.changed
+        drift
     }
 
     /// All that can be said of the mechanism at `t` and state vector `y`.
@@ -274,7 +286,11 @@ impl Ode for Simulation {
     }
 
     fn project(&mut self, _t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
-        Ok(self.project_beyond(self.drift_tolerance, y))
+        let drift = self.project_beyond(self.drift_tolerance, y);
+        if drift.remaining > OFF_THE_LOOP {
+            return Err(EvalError::Retry(Box::new(OffTheLoop(drift.remaining))));
+        }
+        Ok(drift.changed)
     }
 }
 

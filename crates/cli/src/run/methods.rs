@@ -64,11 +64,11 @@ impl Plan {
             return misplaced("--iterations", "only newmark has a corrector to iterate");
         }
         let rtol = args.rtol.unwrap_or(TOLERANCE);
-        if rtol > LOOSEST {
-            return Err(
-                CliError::usage(format!("rtol = {rtol} is too loose: the result would mean nothing"))
-                    .with_hint(format!("give at most {LOOSEST}")),
-            );
+        for (name, tolerance) in [("rtol", rtol), ("atol", args.atol.unwrap_or(rtol))] {
+            if tolerance > LOOSEST {
+                let message = format!("{name} = {tolerance} is too loose: the result would mean nothing");
+                return Err(CliError::usage(message).with_hint(format!("give at most {LOOSEST}")));
+            }
         }
         Ok(Self {
             method: method.to_owned(),

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use linkdyn_mechanisms::dynamics::{Formulation, ReactionSolver};
 use linkdyn_mechanisms::integrators::Integration;
-use linkdyn_mechanisms::{Mechanism, Observation, RunError, Scene, Simulation, State, run as run_simulation};
+use linkdyn_mechanisms::{MOST_ROWS, Mechanism, Observation, RunError, Scene, Simulation, State, run_watched};
 
 use crate::args::{FormulationArg, RunArgs};
 use crate::errors::CliError;
@@ -49,6 +49,13 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let prepared = prepare(args, &variant)?;
     let until = args.until.unwrap_or(prepared.scene.until);
     let grid = (until, args.every.unwrap_or(until / ROWS));
+    if grid.0 / grid.1 > MOST_ROWS as f64 {
+        let message = format!(
+            "--every {} s until {} s makes more than {MOST_ROWS} rows",
+            grid.1, grid.0
+        );
+        return Err(CliError::usage(message).with_hint("give a larger `--every`"));
+    }
     let target = args
         .out
         .clone()
@@ -62,19 +69,23 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let mut progress = Progress::new(&prepared.scene.name, 0.0, until, args.quiet || args.json);
     let mut row = Vec::new();
     let mut write_error = None;
-    let (record, mut outcome, ended) = simulate(&prepared, &plan, grid, |o| {
-        o.write(prepared.scene.reactions, &mut row);
-        if let Err(error) = table.row(&row) {
-            write_error = Some(error);
-            return ControlFlow::Break(());
-        }
-        progress.set(o.t);
-        if interrupt.requested() {
-            ControlFlow::Break(())
-        } else {
+    let (record, mut outcome, ended) = simulate(
+        &prepared,
+        &plan,
+        grid,
+        |o| {
+            o.write(prepared.scene.reactions, &mut row);
+            if let Err(error) = table.row(&row) {
+                write_error = Some(error);
+                return ControlFlow::Break(());
+            }
             ControlFlow::Continue(())
-        }
-    })?;
+        },
+        |t| {
+            progress.set(t);
+            flow(&interrupt)
+        },
+    )?;
     drop(progress);
     if let Some(error) = write_error {
         return Err(error.into());
@@ -85,7 +96,8 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
         &prepared.mechanism,
         record.t.last().copied().unwrap_or(0.0),
     )?;
-    draw(args, &plan, grid, &prepared, &variant, &record, &mut folder)?;
+    let other = compare(args, &plan, grid, &variant, &record, &interrupt);
+    draw(&prepared, &variant, &record, other.as_ref(), &mut folder)?;
 
     let summary = report::summary(&prepared.scene, &prepared.mechanism, &record, &outcome);
     let manifest = report::manifest(&prepared.scene, &plan, grid, &columns, &summary, &outcome);
@@ -128,12 +140,13 @@ fn prepare(args: &RunArgs, variant: &Variant) -> Result<Prepared, CliError> {
     })
 }
 
-/// Runs a scene; `observe` sees each output first. The inner result tells why the run ended early, if it did.
+/// Runs a scene; `observe` sees each output and `watch` each step first. The inner result tells why the run ended early, if it did.
 fn simulate(
     prepared: &Prepared,
     plan: &Plan,
     grid: (f64, f64),
     mut observe: impl FnMut(&Observation) -> ControlFlow<()>,
+    watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(Record, Outcome, Result<(), RunError>), CliError> {
     let mut simulation = Simulation::new(&prepared.mechanism);
     simulation.set_drift_tolerance(plan.drift_tolerance());
@@ -147,10 +160,16 @@ fn simulate(
         .map_err(|error| CliError::usage("the integration cannot begin").with_source(error))?;
     let mut record = Record::default();
     let begun = Instant::now();
-    let ended = run_simulation(&mut integration, grid.0, grid.1, |o| {
-        record.push(o);
-        observe(o)
-    });
+    let ended = run_watched(
+        &mut integration,
+        grid.0,
+        grid.1,
+        |o| {
+            record.push(o);
+            observe(o)
+        },
+        watch,
+    );
     let outcome = Outcome {
         statistics: integration.statistics(),
         counters: integration.problem().counters(),
@@ -162,35 +181,57 @@ fn simulate(
     Ok((record, outcome, ended))
 }
 
-/// Draws the run together with the other variant of the scene, as far as that runs.
-fn draw(
+/// Whether the user asked to stop.
+fn flow(interrupt: &Interrupt) -> ControlFlow<()> {
+    if interrupt.requested() {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    }
+}
+
+/// The other variant of the scene, friction on or off, as far as it runs over the time of `record`; it is there for
+/// comparison only, and so none of its failures is one of the run.
+fn compare(
     args: &RunArgs,
     plan: &Plan,
     grid: (f64, f64),
+    variant: &Variant,
+    record: &Record,
+    interrupt: &Interrupt,
+) -> Option<Record> {
+    let friction = !variant.friction;
+    let prepared = prepare(args, &Variant { friction, ..*variant }).ok()?;
+    let reached = (*record.t.last()?, grid.1);
+    let go_on = |_: &Observation| ControlFlow::Continue(());
+    let (other, ..) = simulate(&prepared, plan, reached, go_on, |_| flow(interrupt)).ok()?;
+    Some(other)
+}
+
+/// Draws the run together with the other variant of the scene.
+fn draw(
     prepared: &Prepared,
     variant: &Variant,
     record: &Record,
+    other: Option<&Record>,
     folder: &mut RunFolder,
 ) -> Result<(), CliError> {
-    let other = Variant {
-        friction: !variant.friction,
-        ..*variant
-    };
-    let other = prepare(args, &other)?;
-    let reached = (record.t.last().copied().unwrap_or(grid.0), grid.1);
-    let (other_record, ..) = simulate(&other, plan, reached, |_| ControlFlow::Continue(()))?;
     let names = Names {
         title: &prepared.scene.name.to_uppercase(),
         coordinates: prepared.mechanism.coordinate_names().collect(),
         joints: prepared.mechanism.joint_names().collect(),
     };
-    let (ideal, friction) = if variant.friction {
-        (&other_record, record)
-    } else {
-        (record, &other_record)
+    let curve = |friction: bool, record| {
+        let (label, style) = if friction {
+            ("joint friction", 1)
+        } else {
+            ("ideal joints", 0)
+        };
+        Curve { label, style, record }
     };
-    let curves = [("ideal joints", 0, ideal), ("joint friction", 1, friction)];
-    let curves = curves.map(|(label, style, record)| Curve { label, style, record });
+    let mut curves = vec![curve(variant.friction, record)];
+    curves.extend(other.map(|other| curve(!variant.friction, other)));
+    curves.sort_by_key(|curve| curve.style);
     pictures::draw(folder, &names, &curves)
 }
 
