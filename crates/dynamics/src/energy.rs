@@ -1,6 +1,6 @@
 //! Energies.
 
-use crate::load::Motion;
+use crate::load::{Instant, InternalState, Motion};
 use crate::system::System;
 use linkdyn_kinematics::{Positions, Velocities};
 
@@ -11,7 +11,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// Potential energy of weight, zero for centres of mass at the global origin.
     pub potential: f64,
-    /// Energy stored in conservative loads (springs).
+    /// Energy stored by loads (springs, contacts).
     pub elastic: f64,
 }
 
@@ -23,8 +23,14 @@ impl Energy {
 }
 
 impl System {
-    /// Energies at a state.
+    /// Energies at a state; loads with internals are taken as at their beginning.
     pub fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> Energy {
+        self.energy_with(&Instant::new(t, q, v))
+    }
+
+    /// Energies at a state with the internal states and the memory of all loads.
+    pub fn energy_with(&self, at: &Instant<'_>) -> Energy {
+        let Instant { t, q, v, internal } = *at;
         let mut positions = Positions::new(&self.tree);
         let mut velocities = Velocities::new(&self.tree);
         self.tree.positions(q, &mut positions);
@@ -44,11 +50,15 @@ impl System {
             v,
             positions: &positions,
             velocities: &velocities,
+            internal: InternalState::default(),
         };
-        energy.elastic = self.loads[self.active_loads..]
-            .iter()
-            .map(|load| load.potential_energy(&motion))
-            .sum();
+        for (k, load) in self.loads.iter().enumerate() {
+            let place = k.checked_sub(self.plain_loads).and_then(|k| self.places.get(k));
+            energy.elastic += match place {
+                Some(place) => load.potential_energy(&self.seen_by(place, &motion, internal)),
+                None => load.potential_energy(&motion),
+            };
+        }
         energy
     }
 }

@@ -3,7 +3,7 @@
 use crate::composite::along;
 use crate::error::DynamicsError;
 use crate::lagrange;
-use crate::load::{Loads, Motion};
+use crate::load::{Instant, InternalState, Loads, Motion};
 use crate::symmetric::SpatialInertia;
 use crate::system::{Formulation, System};
 use crate::workspace::{MassFactor, Workspace, moves};
@@ -17,8 +17,18 @@ impl System {
     /// # Errors
     /// [`DynamicsError`] with time and place. `work` then holds no result.
     pub fn evaluate(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) -> Result<(), DynamicsError> {
+        self.evaluate_with(&Instant::new(t, q, v), work)
+    }
+
+    /// As [`evaluate`](Self::evaluate), with internal states and memory of the loads; the rates of these states are found in
+    /// `work` too.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] with time and place. `work` then holds no result.
+    pub fn evaluate_with(&self, at: &Instant<'_>, work: &mut Workspace) -> Result<(), DynamicsError> {
+        let Instant { t, v, .. } = *at;
         work.counters.evaluations += 1;
-        self.set_up(t, q, v, work)?;
+        self.set_up(at, work)?;
         self.solve(work);
         if !self.reaction_loads.is_empty() {
             self.solve_reaction_loads(t, v, work)?;
@@ -38,11 +48,12 @@ impl System {
 
     /// Motion, loads, factors of the mass matrix, and all right-hand sides taken inward.
     #[inline]
-    fn set_up(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) -> Result<(), DynamicsError> {
+    fn set_up(&self, at: &Instant<'_>, work: &mut Workspace) -> Result<(), DynamicsError> {
+        let Instant { t, q, v, .. } = *at;
         let base = -self.gravity;
         self.tree
             .sweep(q, v, &base, &mut work.positions, &mut work.velocities, &mut work.biases);
-        self.apply_loads(t, q, v, work);
+        self.apply_loads(at, work);
         work.columns.clear();
         for (speed, force) in work.generalised.iter().enumerate() {
             *work.columns.at_mut(speed, 0) = *force;
@@ -85,27 +96,41 @@ impl System {
 
     /// Generalised forces and outside wrenches of all loads, and the power of those that are not conservative.
     #[inline]
-    fn apply_loads(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) {
+    fn apply_loads(&self, at: &Instant<'_>, work: &mut Workspace) {
         work.generalised.fill(0.0);
         work.own.fill(Wrench::zero());
         work.power = 0.0;
         if self.loads.is_empty() {
             return;
         }
+        let Instant { t, q, v, internal } = *at;
         let motion = Motion {
             t,
             q,
             v,
             positions: &work.positions,
             velocities: &work.velocities,
+            internal: InternalState::default(),
         };
         let mut loads = Loads {
             generalised: &mut work.generalised,
             counter: &mut work.own,
             on_links: false,
+            storing: 0.0,
+            state_rates: &mut [],
+            integral_rates: &mut [],
         };
-        let (active, conservative) = self.loads.split_at(self.active_loads);
-        active.iter().for_each(|load| load.apply(&motion, &mut loads));
+        let (plain, others) = self.loads.split_at(self.plain_loads);
+        let (with_internals, conservative) = others.split_at(self.places.len());
+        plain.iter().for_each(|load| load.apply(&motion, &mut loads));
+        let (mut states, mut integrals) = (&mut work.state_rates[..], &mut work.integral_rates[..]);
+        states.fill(0.0);
+        integrals.fill(0.0);
+        for (load, place) in with_internals.iter().zip(&self.places) {
+            (loads.state_rates, states) = states.split_at_mut(place.states.len());
+            (loads.integral_rates, integrals) = integrals.split_at_mut(place.integrals.len());
+            load.apply(&self.seen_by(place, &motion, internal), &mut loads);
+        }
         work.power = loads.power(&motion);
         conservative.iter().for_each(|load| load.apply(&motion, &mut loads));
     }

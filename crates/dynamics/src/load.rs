@@ -16,6 +16,59 @@ pub struct Motion<'a> {
     pub positions: &'a Positions,
     /// Velocities of all links.
     pub velocities: &'a Velocities,
+    /// Internal states and memory of the load that is asked; empty for those that have none.
+    pub internal: InternalState<'a>,
+}
+
+/// A state of a system at a time, with all that its loads keep.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a> {
+    /// Time \[s\].
+    pub t: f64,
+    /// Coordinates.
+    pub q: &'a [f64],
+    /// Speeds.
+    pub v: &'a [f64],
+    /// Internal states and memory of all loads; where a slice is too short, zeros are taken for all of it.
+    pub internal: InternalState<'a>,
+}
+
+impl<'a> Instant<'a> {
+    /// A state in which loads have kept nothing yet.
+    pub fn new(t: f64, q: &'a [f64], v: &'a [f64]) -> Self {
+        let internal = InternalState::default();
+        Self { t, q, v, internal }
+    }
+}
+
+/// How many numbers a load keeps beside the motion; none by default. They belong to the state of whoever integrates, so that
+/// steps can be tried and thrown away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Internals {
+    /// States with rates of their own, such as the deflection of a bristle.
+    pub states: usize,
+    /// Integrals over time on which nothing depends, such as energy lost.
+    pub integrals: usize,
+    /// Numbers that change at events only, such as the speed at the beginning of a contact. All start from zero.
+    pub memory: usize,
+    /// Root functions: an event is where one of them, having been positive, becomes negative.
+    pub roots: usize,
+}
+
+impl Internals {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// Internal states and memory, of one load or of all of them one after the other.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InternalState<'a> {
+    /// States with rates of their own.
+    pub states: &'a [f64],
+    /// Numbers that change at events only.
+    pub memory: &'a [f64],
 }
 
 /// Where loads put their forces. Loads add, they never assign.
@@ -26,6 +79,12 @@ pub struct Loads<'a> {
     pub(crate) counter: &'a mut [Wrench],
     /// Whether any wrench was added.
     pub(crate) on_links: bool,
+    /// Power that goes into energy stored by loads \[W\].
+    pub(crate) storing: f64,
+    /// Rates of the internal states of the load that is asked; zero before it is.
+    pub state_rates: &'a mut [f64],
+    /// Rates of its integrals; zero before it is asked.
+    pub integral_rates: &'a mut [f64],
 }
 
 impl Loads<'_> {
@@ -42,7 +101,14 @@ impl Loads<'_> {
         self.on_links = true;
     }
 
-    /// Power of all loads added so far \[W\].
+    /// Tells that power \[W\] goes into the load's [stored energy](Load::potential_energy) and thus is no work done on the system.
+    /// Conservative loads need not say so.
+    #[inline]
+    pub fn stores(&mut self, power: f64) {
+        self.storing += power;
+    }
+
+    /// Power of all loads added so far that is not stored \[W\].
     #[inline]
     pub(crate) fn power(&self, motion: &Motion<'_>) -> f64 {
         let mut power: f64 = self.generalised.iter().zip(motion.v).map(|(f, v)| f * v).sum();
@@ -55,7 +121,7 @@ impl Loads<'_> {
                 .map(|(wrench, twist)| wrench.power(twist))
                 .sum::<f64>();
         }
-        power
+        power + self.storing
     }
 }
 
@@ -70,7 +136,7 @@ pub trait Load: Debug + Send + Sync {
         false
     }
 
-    /// Stored energy of a conservative load \[J\].
+    /// Energy that the load stores \[J\].
     fn potential_energy(&self, _motion: &Motion<'_>) -> f64 {
         0.0
     }
@@ -79,6 +145,18 @@ pub trait Load: Debug + Send + Sync {
     fn stop_times(&self) -> Vec<f64> {
         Vec::new()
     }
+
+    /// How many numbers the load keeps beside the motion.
+    fn internals(&self) -> Internals {
+        Internals::default()
+    }
+
+    /// Writes the load's root functions.
+    fn roots(&self, _motion: &Motion<'_>, _roots: &mut [f64]) {}
+
+    /// Changes the load's internal states and memory at an event: `fired` tells which of its root functions met zero, `motion`
+    /// holds states and memory as they were before.
+    fn at_event(&self, _motion: &Motion<'_>, _fired: &[bool], _states: &mut [f64], _memory: &mut [f64]) {}
 }
 
 /// The force and torque that a reaction-dependent load sees: those on the joint's successor by its predecessor, at the

@@ -2,9 +2,10 @@
 
 use crate::error::SystemError;
 use crate::inertia::{Body, RigidInertia};
-use crate::load::{Load, ReactionLoad};
+use crate::load::{Internals, Load, ReactionLoad};
 use linkdyn_kinematics::{Closure, LinkId, Tree, assembly};
 use nalgebra::Vector3;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Terms that pull the closure back when it has drifted: `phi'' + 2 alpha phi' + beta^2 phi = 0` \[Baumgarte 1972\].
@@ -108,13 +109,49 @@ pub struct System {
     pub(crate) gravity: Vector3<f64>,
     pub(crate) closures: Vec<Closure>,
     pub(crate) equations: usize,
-    /// The loads that are not conservative first.
+    /// First those without internals that are not conservative, then those with internals, then the conservative ones.
     pub(crate) loads: Vec<Arc<dyn Load>>,
-    pub(crate) active_loads: usize,
+    /// End of the first group.
+    pub(crate) plain_loads: usize,
+    /// The second group's places in the internal states.
+    pub(crate) places: Vec<Place>,
+    /// Sums over all loads.
+    pub(crate) internals: Internals,
+    /// Internals of a load before anything has happened to it.
+    pub(crate) zeros: Vec<f64>,
     pub(crate) reaction_loads: Vec<OnNode>,
     pub(crate) baumgarte: Option<Baumgarte>,
     pub(crate) formulation: Formulation,
     pub(crate) reaction_solver: ReactionSolver,
+}
+
+/// Where the internals of a load stand among those of all loads.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Of its states.
+    pub states: Range<usize>,
+    /// Of its integrals.
+    pub integrals: Range<usize>,
+    /// Of its memory.
+    pub memory: Range<usize>,
+    /// Of its root functions.
+    pub roots: Range<usize>,
+}
+
+impl Place {
+    /// The place of the `next` load behind those summed in `sum`, to which it is added.
+    fn after(sum: &mut Internals, next: Internals) -> Self {
+        let take = |sum: &mut usize, count: usize| {
+            *sum += count;
+            *sum - count..*sum
+        };
+        Self {
+            states: take(&mut sum.states, next.states),
+            integrals: take(&mut sum.integrals, next.integrals),
+            memory: take(&mut sum.memory, next.memory),
+            roots: take(&mut sum.roots, next.roots),
+        }
+    }
 }
 
 /// A reaction load with its place.
@@ -179,8 +216,16 @@ impl System {
                 load,
             });
         }
-        let (mut loads, conservative): (Vec<_>, Vec<_>) = d.loads.into_iter().partition(|load| !load.is_conservative());
-        let active_loads = loads.len();
+        let (with_internals, plain): (Vec<_>, Vec<_>) =
+            d.loads.into_iter().partition(|load| !load.internals().is_empty());
+        let (mut loads, conservative): (Vec<_>, Vec<_>) = plain.into_iter().partition(|load| !load.is_conservative());
+        let plain_loads = loads.len();
+        let mut internals = Internals::default();
+        let places = with_internals
+            .iter()
+            .map(|load| Place::after(&mut internals, load.internals()));
+        let places = places.collect();
+        loads.extend(with_internals);
         loads.extend(conservative);
         Ok(Self {
             equations: assembly::equations(&d.closures),
@@ -190,7 +235,10 @@ impl System {
             gravity: d.gravity,
             closures: d.closures,
             loads,
-            active_loads,
+            plain_loads,
+            places,
+            zeros: vec![0.0; internals.states.max(internals.memory)],
+            internals,
             reaction_loads,
             baumgarte: d.baumgarte,
             formulation: d.formulation,
@@ -226,6 +274,17 @@ impl System {
     /// Loads that depend on time, position and velocity.
     pub fn loads(&self) -> &[Arc<dyn Load>] {
         &self.loads
+    }
+
+    /// How many internal states, integrals, numbers of memory and root functions the loads have in all. They stand one load
+    /// after the other, in the order of [`loads`](Self::loads).
+    pub fn internals(&self) -> Internals {
+        self.internals
+    }
+
+    /// Places of the loads with internals, in the order of [`loads`](Self::loads).
+    pub fn places(&self) -> &[Place] {
+        &self.places
     }
 
     /// Speeds on which the reaction-dependent loads act, in their order.

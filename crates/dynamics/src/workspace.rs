@@ -61,6 +61,9 @@ pub struct Workspace {
     pub(crate) solutions: Columns,
     /// Generalised forces of loads, kept for their power.
     pub(crate) generalised: Vec<f64>,
+    /// Rates of the internal states and of the integrals of all loads.
+    pub(crate) state_rates: Vec<f64>,
+    pub(crate) integral_rates: Vec<f64>,
     pub(crate) constraint: Multipliers,
     pub(crate) reaction_loop: ReactionLoop,
     pub(crate) rates: Vec<f64>,
@@ -102,6 +105,8 @@ impl Workspace {
             columns: Columns::new(tree.speeds(), columns),
             solutions: Columns::new(tree.speeds(), columns),
             generalised: vec![0.0; tree.speeds()],
+            state_rates: vec![0.0; system.internals.states],
+            integral_rates: vec![0.0; system.internals.integrals],
             constraint: Multipliers::new(system.equations),
             reaction_loop: ReactionLoop::new(system),
             rates: vec![0.0; tree.speeds()],
@@ -115,6 +120,16 @@ impl Workspace {
     /// Rates of the speeds: the accelerations of the joints \[rad/s^2, m/s^2\].
     pub fn rates(&self) -> &[f64] {
         &self.rates
+    }
+
+    /// Rates of the internal states of all loads, in the order of [`System::internals`].
+    pub fn state_rates(&self) -> &[f64] {
+        &self.state_rates
+    }
+
+    /// Rates of the integrals of all loads.
+    pub fn integral_rates(&self) -> &[f64] {
+        &self.integral_rates
     }
 
     /// Multipliers of all closures, one after the other; see [`linkdyn_kinematics::Row`] for their meaning.
@@ -137,7 +152,7 @@ impl Workspace {
         self.reaction_loop.measure()
     }
 
-    /// Power of all loads that are not conservative, reaction-dependent ones included \[W\].
+    /// Power of all loads that is not stored, reaction-dependent loads included \[W\].
     pub fn power(&self) -> f64 {
         self.power
     }
