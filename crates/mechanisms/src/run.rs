@@ -1,7 +1,8 @@
 //! One run of a simulation with output on a grid of times.
 
 use crate::error::MotionError;
-use crate::simulation::{OFF_THE_LOOP, Observation, Simulation};
+use crate::observation::Observation;
+use crate::simulation::{OFF_THE_LOOP, Simulation};
 use linkdyn_integrators::{Integration, IntegrationError, Method, Progress};
 use std::ops::ControlFlow;
 use thiserror::Error;

@@ -1,25 +1,70 @@
-//! A mechanism in motion: the initial value problem, and what can be observed at a state.
+//! A mechanism in motion: the initial value problem.
 
 use crate::error::MotionError;
 use crate::mechanism::{Mechanism, State};
-use linkdyn_dynamics::{Counters, Drift, Energy, Reaction, Workspace};
+use linkdyn_dynamics::{Counters, Drift, Instant, InternalState, Workspace};
 use linkdyn_integrators::{EvalError, Ode, SecondOrder, Settings, Tolerance};
-use linkdyn_kinematics::Wrench;
+use std::ops::Range;
 use thiserror::Error;
 
 /// A mechanism with scratch of its own; clone it to send it to another thread.
 ///
-/// The state is `y = (q, v, W)`: coordinates, speeds and, where a load is not conservative, the work \[J\] that loads have done
-/// on the mechanism since the start. Closures are kept by projection after each step.
+/// The state is `y = (q, v, s, W, e)`: coordinates, speeds, internal states of loads (bristles), where a load is not
+/// conservative the work \[J\] that loads have done on the mechanism since the start, and integrals of loads (energies lost in
+/// contacts). Closures are kept by projection after each step.
+///
+/// Numbers that change at events only, the memory of loads, stand beside it: they are constant in every step. The memory of the
+/// time before the last event is kept too, so that states within the step that led to it can be observed.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    mechanism: Mechanism,
-    work: Workspace,
-    coordinates: usize,
-    speeds: usize,
-    has_work: bool,
+    pub(crate) mechanism: Mechanism,
+    pub(crate) work: Workspace,
+    pub(crate) layout: Layout,
+    pub(crate) memory: Memory,
     drift_tolerance: f64,
     worst: Worst,
+}
+
+/// Where the parts of the state vector stand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Coordinates.
+    pub coordinates: Range<usize>,
+    /// Speeds.
+    pub speeds: Range<usize>,
+    /// Internal states of loads.
+    pub states: Range<usize>,
+    /// Work of loads that are not conservative: one number or none.
+    pub work: Range<usize>,
+    /// Integrals of loads.
+    pub integrals: Range<usize>,
+}
+
+impl Layout {
+    fn new(counts: [usize; 5]) -> Self {
+        let mut end = 0;
+        let [coordinates, speeds, states, work, integrals] = counts.map(|count| {
+            end += count;
+            end - count..end
+        });
+        Self {
+            coordinates,
+            speeds,
+            states,
+            work,
+            integrals,
+        }
+    }
+
+    /// Length of the state vector.
+    pub fn len(&self) -> usize {
+        self.integrals.end
+    }
+
+    /// Whether there is nothing; never for a simulation.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 }
 
 /// Absolute tolerance of speeds in units of that of coordinates \[1/s\]: about the speed at which linkages turn. On RSRRR this
@@ -48,41 +93,24 @@ pub struct Worst {
     pub friction_residual: f64,
 }
 
-/// What a mechanism does at one instant.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Observation {
-    /// Time \[s\].
-    pub t: f64,
-    /// Coordinates.
-    pub q: Vec<f64>,
-    /// Speeds.
-    pub v: Vec<f64>,
-    /// Rates of the speeds.
-    pub a: Vec<f64>,
-    /// Multipliers of all loops.
-    pub multipliers: Vec<f64>,
-    /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link.
-    pub reactions: Vec<Reaction>,
-    /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
-    pub friction: Vec<f64>,
-    /// Energies.
-    pub energy: Energy,
-    /// Work done on the mechanism by drives, friction and damping since the start \[J\].
-    pub work: f64,
-    /// Largest closure residual and rate.
-    pub violation: (f64, f64),
-}
-
 impl Simulation {
     /// A simulation of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let system = mechanism.system();
         let conservative = system.loads().iter().all(|load| load.is_conservative());
+        let has_work = !conservative || mechanism.has_friction();
+        let (tree, internals) = (system.tree(), system.internals());
+        let layout = Layout::new([
+            tree.coordinates(),
+            tree.speeds(),
+            internals.states,
+            usize::from(has_work),
+            internals.integrals,
+        ]);
         Self {
             work: Workspace::new(system),
-            coordinates: system.tree().coordinates(),
-            speeds: system.tree().speeds(),
-            has_work: !conservative || mechanism.has_friction(),
+            layout,
+            memory: Memory::new(internals.memory),
             drift_tolerance: 0.0,
             worst: Worst::default(),
             mechanism: mechanism.clone(),
@@ -94,36 +122,24 @@ impl Simulation {
         &self.mechanism
     }
 
-    /// The state vector of a start, with no work done yet.
+    /// The state vector of a start, with no work done yet and all bristles at rest.
     pub fn state_vector(&self, state: &State) -> Vec<f64> {
         let mut y = [state.q.as_slice(), state.v.as_slice()].concat();
-        if self.has_work {
-            y.push(0.0);
-        }
+        y.resize(self.layout.len(), 0.0);
         y
     }
 
-    /// Number of coordinates at the head of the state vector.
-    pub fn coordinates(&self) -> usize {
-        self.coordinates
+    /// Where the parts of the state vector stand.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
     }
 
-    /// Number of speeds that follow.
-    pub fn speeds(&self) -> usize {
-        self.speeds
-    }
-
-    /// Whether the work stands at the end of the state vector.
-    pub fn has_work(&self) -> bool {
-        self.has_work
-    }
-
-    /// Tolerances for an integration: `relative` for all of the state, `absolute` for coordinates \[rad, m\], [`SPEED_SCALE`] times
-    /// that for speeds. The work at the end of the state follows the motion and is not controlled.
+    /// Tolerances for an integration: `relative` for all of the state, `absolute` for coordinates \[rad, m\] and bristles \[m\],
+    /// [`SPEED_SCALE`] times that for speeds. Work and integrals follow the motion and are not controlled.
     pub fn settings(&self, relative: f64, absolute: f64) -> Settings {
-        let mut components = vec![absolute; self.coordinates];
-        components.resize(self.coordinates + self.speeds, SPEED_SCALE * absolute);
-        components.extend(self.has_work.then_some(f64::INFINITY));
+        let mut components = vec![absolute; self.layout.len()];
+        components[self.layout.speeds.clone()].fill(SPEED_SCALE * absolute);
+        components[self.layout.work.start..].fill(f64::INFINITY);
         Settings {
             absolute: Tolerance::from(components),
             ..Settings::tolerances(relative, absolute)
@@ -146,7 +162,21 @@ impl Simulation {
         self.worst
     }
 
-    /// Accelerations at a state.
+    /// What loads have kept since the last event, such as impact speeds; with the state vector it is all that a run needs to go on.
+    pub fn memory(&self) -> &[f64] {
+        &self.memory.now
+    }
+
+    /// Sets the memory of loads, to go on from a saved state.
+    ///
+    /// # Panics
+    /// If its length is not that of [`memory`](Self::memory).
+    pub fn set_memory(&mut self, memory: &[f64]) {
+        self.memory.now.copy_from_slice(memory);
+        self.memory.since = f64::NEG_INFINITY;
+    }
+
+    /// Accelerations at a state in which loads have kept nothing.
     ///
     /// # Errors
     /// [`MotionError`] where they do not exist.
@@ -162,125 +192,79 @@ impl Simulation {
     }
 
     fn project_beyond(&mut self, tolerance: f64, y: &mut [f64]) -> Drift {
-        let (q, rest) = y.split_at_mut(self.coordinates);
-        let (system, v) = (&self.mechanism.system, &mut rest[..self.speeds]);
+        let (q, rest) = y.split_at_mut(self.layout.speeds.start);
+        let (system, v) = (&self.mechanism.system, &mut rest[..self.layout.speeds.len()]);
         let drift = system.project_beyond(tolerance, q, v, &mut self.work);
         self.worst.position_drift = self.worst.position_drift.max(drift.position);
         self.worst.velocity_drift = self.worst.velocity_drift.max(drift.velocity);
         drift
     }
+}
 
-    /// All that can be said of the mechanism at `t` and state vector `y`.
-    ///
-    /// # Errors
-    /// [`MotionError`] where the accelerations do not exist.
-    pub fn observe(&mut self, t: f64, y: &[f64], observation: &mut Observation) -> Result<(), MotionError> {
-        let system = &self.mechanism.system;
-        let (q, rest) = y.split_at(self.coordinates);
-        let (v, work) = rest.split_at(self.speeds);
-        let o = observation;
-        o.violation = system.violation(q, v, &mut self.work);
-        let evaluated = system.evaluate(t, q, v, &mut self.work);
-        evaluated.map_err(|cause| self.mechanism.explain(cause))?;
-        system.reactions(&mut self.work);
-        o.t = t;
-        replace(&mut o.q, q);
-        replace(&mut o.v, v);
-        replace(&mut o.a, self.work.rates());
-        replace(&mut o.multipliers, self.work.multipliers());
-        o.reactions.clear();
-        for joint in &self.mechanism.joints {
-            let reaction = system.reaction(joint.link, &self.work);
-            let to_link = joint.to_link.rotation;
-            o.reactions.push(Wrench {
-                torque: to_link.tr_mul(&reaction.torque),
-                force: to_link.tr_mul(&reaction.force),
-            });
+/// Numbers that loads keep between events, from the last event on and before it.
+#[derive(Clone, Debug)]
+pub(crate) struct Memory {
+    now: Vec<f64>,
+    before: Vec<f64>,
+    /// Time of the last event \[s\].
+    since: f64,
+}
+
+impl Memory {
+    fn new(count: usize) -> Self {
+        Self {
+            now: vec![0.0; count],
+            before: vec![0.0; count],
+            since: f64::NEG_INFINITY,
         }
-        o.friction.clear();
-        // Results show friction with the sign of the speed; the generalised force opposes it.
-        o.friction.extend(self.work.reaction_loads().iter().map(|force| -force));
-        o.energy = system.energy(t, q, v);
-        o.work = work.first().copied().unwrap_or(0.0);
-        Ok(())
     }
 
-    /// Names of the numbers of an [`Observation`] in the order of [`Observation::write`], as result files have them.
-    /// Reactions are listed only `with_reactions`.
-    pub fn columns(&self, with_reactions: bool) -> Vec<String> {
-        let mechanism = &self.mechanism;
-        let mut names = vec!["t".to_owned()];
-        let speeds = || mechanism.speeds.iter();
-        names.extend(mechanism.coordinate_names().map(|name| format!("q.{name}")));
-        names.extend(speeds().map(|name| format!("v.{name}")));
-        names.extend(speeds().map(|name| format!("a.{name}")));
-        for cut in &mechanism.loops {
-            names.extend(cut.components.iter().map(|c| format!("lambda.{}.{c}", cut.name)));
-        }
-        if with_reactions {
-            for joint in &mechanism.joints {
-                names.extend(["fx", "fy", "fz", "nx", "ny", "nz"].map(|c| format!("reaction.{}.{c}", joint.name)));
-            }
-        }
-        names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
-        names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
-        if !mechanism.loops.is_empty() {
-            names.extend(["position", "velocity"].map(|c| format!("violation.{c}")));
-        }
-        names
+    /// The memory at a time not before the last event but one.
+    #[inline]
+    fn at(&self, t: f64) -> &[f64] {
+        if t < self.since { &self.before } else { &self.now }
     }
 }
 
-fn replace(target: &mut Vec<f64>, source: &[f64]) {
-    target.clear();
-    target.extend_from_slice(source);
-}
-
-impl Observation {
-    /// Kinetic, potential and stored energy less the work done: constant for every mechanism \[J\].
-    pub fn energy_balance(&self) -> f64 {
-        self.energy.total() - self.work
-    }
-
-    /// Writes all numbers in the order of [`Simulation::columns`].
-    pub fn write(&self, with_reactions: bool, row: &mut Vec<f64>) {
-        row.clear();
-        row.push(self.t);
-        row.extend(self.q.iter().chain(&self.v).chain(&self.a).chain(&self.multipliers));
-        if with_reactions {
-            for reaction in &self.reactions {
-                row.extend(reaction.force.iter().chain(reaction.torque.iter()));
-            }
-        }
-        row.extend(&self.friction);
-        let energy = &self.energy;
-        row.extend([energy.kinetic, energy.potential, energy.elastic, self.work]);
-        if !self.multipliers.is_empty() {
-            row.extend([self.violation.0, self.violation.1]);
+impl Layout {
+    /// A state vector as mechanics see it.
+    #[inline]
+    pub(crate) fn instant<'a>(&self, t: f64, y: &'a [f64], memory: &'a Memory) -> Instant<'a> {
+        Instant {
+            t,
+            q: &y[self.coordinates.clone()],
+            v: &y[self.speeds.clone()],
+            internal: InternalState {
+                states: &y[self.states.clone()],
+                memory: memory.at(t),
+            },
         }
     }
 }
 
 impl Ode for Simulation {
     fn dim(&self) -> usize {
-        self.coordinates + self.speeds + usize::from(self.has_work)
+        self.layout.len()
     }
 
     #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
         let system = &self.mechanism.system;
-        let (q, rest) = y.split_at(self.coordinates);
-        let v = &rest[..self.speeds];
+        let at = self.layout.instant(t, y, &self.memory);
         // A trial state may lie where the mechanism jams or stretches; a shorter step may not.
-        let evaluated = system.evaluate(t, q, v, &mut self.work);
+        let evaluated = system.evaluate_with(&at, &mut self.work);
         evaluated.map_err(|cause| EvalError::Retry(Box::new(self.mechanism.explain(cause))))?;
-        let (q_rate, rest) = dy.split_at_mut(self.coordinates);
-        let (v_rate, work_rate) = rest.split_at_mut(self.speeds);
-        system.tree().coordinate_rates(q, v, q_rate);
+        let (q_rate, rest) = dy.split_at_mut(self.layout.coordinates.end);
+        let (v_rate, rest) = rest.split_at_mut(self.layout.speeds.len());
+        let (state_rates, rest) = rest.split_at_mut(self.layout.states.len());
+        let (work_rate, integral_rates) = rest.split_at_mut(self.layout.work.len());
+        system.tree().coordinate_rates(at.q, at.v, q_rate);
         v_rate.copy_from_slice(self.work.rates());
+        state_rates.copy_from_slice(self.work.state_rates());
         if let Some(rate) = work_rate.first_mut() {
             *rate = self.work.power();
         }
+        integral_rates.copy_from_slice(self.work.integral_rates());
         self.worst.friction_residual = self.worst.friction_residual.max(self.work.reaction_residual());
         Ok(())
     }
@@ -297,8 +281,8 @@ impl Ode for Simulation {
 impl SecondOrder for Simulation {
     /// All coordinates, or none where the speeds are not their rates (ball joints with quaternions).
     fn pairs(&self) -> usize {
-        if self.coordinates == self.speeds {
-            self.speeds
+        if self.layout.coordinates.len() == self.layout.speeds.len() {
+            self.layout.speeds.len()
         } else {
             0
         }

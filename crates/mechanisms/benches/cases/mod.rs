@@ -40,7 +40,7 @@ pub fn rsrrr_case(friction: bool) -> Case {
     start.speeds.push(("psi11".into(), 8.5));
     let (state, _) = mechanism.assemble(&start).expect("the crank turns fully");
     let simulation = Simulation::new(&mechanism);
-    assert_eq!(simulation.coordinates(), 4);
+    assert_eq!(simulation.layout().coordinates.len(), 4);
     Case {
         work: Workspace::new(mechanism.system()),
         system: mechanism.system().clone(),

@@ -1,0 +1,125 @@
+//! What can be observed at a state, and the columns in which result files list it.
+
+use crate::error::MotionError;
+use crate::simulation::Simulation;
+use linkdyn_dynamics::{Energy, Reaction};
+use linkdyn_kinematics::Wrench;
+
+/// What a mechanism does at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Observation {
+    /// Time \[s\].
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Speeds.
+    pub v: Vec<f64>,
+    /// Rates of the speeds.
+    pub a: Vec<f64>,
+    /// Multipliers of all loops.
+    pub multipliers: Vec<f64>,
+    /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link.
+    pub reactions: Vec<Reaction>,
+    /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
+    pub friction: Vec<f64>,
+    /// Energies.
+    pub energy: Energy,
+    /// Work done on the mechanism by drives, friction and damping since the start \[J\].
+    pub work: f64,
+    /// Integrals of loads since the start.
+    pub integrals: Vec<f64>,
+    /// Largest closure residual and rate.
+    pub violation: (f64, f64),
+}
+
+impl Simulation {
+    /// All that can be said of the mechanism at `t` and state vector `y`.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the accelerations do not exist.
+    pub fn observe(&mut self, t: f64, y: &[f64], observation: &mut Observation) -> Result<(), MotionError> {
+        let system = &self.mechanism.system;
+        let at = self.layout.instant(t, y, &self.memory);
+        let o = observation;
+        o.violation = system.violation(at.q, at.v, &mut self.work);
+        let evaluated = system.evaluate_with(&at, &mut self.work);
+        evaluated.map_err(|cause| self.mechanism.explain(cause))?;
+        system.reactions(&mut self.work);
+        o.t = t;
+        replace(&mut o.q, at.q);
+        replace(&mut o.v, at.v);
+        replace(&mut o.a, self.work.rates());
+        replace(&mut o.multipliers, self.work.multipliers());
+        o.reactions.clear();
+        for joint in &self.mechanism.joints {
+            let reaction = system.reaction(joint.link, &self.work);
+            let to_link = joint.to_link.rotation;
+            o.reactions.push(Wrench {
+                torque: to_link.tr_mul(&reaction.torque),
+                force: to_link.tr_mul(&reaction.force),
+            });
+        }
+        o.friction.clear();
+        // Results show friction with the sign of the speed; the generalised force opposes it.
+        o.friction.extend(self.work.reaction_loads().iter().map(|force| -force));
+        o.energy = system.energy_with(&at);
+        o.work = y[self.layout.work.clone()].first().copied().unwrap_or(0.0);
+        replace(&mut o.integrals, &y[self.layout.integrals.clone()]);
+        Ok(())
+    }
+
+    /// Names of the numbers of an [`Observation`] in the order of [`Observation::write`], as result files have them.
+    /// Reactions are listed only `with_reactions`.
+    pub fn columns(&self, with_reactions: bool) -> Vec<String> {
+        let mechanism = &self.mechanism;
+        let mut names = vec!["t".to_owned()];
+        let speeds = || mechanism.speeds.iter();
+        names.extend(mechanism.coordinate_names().map(|name| format!("q.{name}")));
+        names.extend(speeds().map(|name| format!("v.{name}")));
+        names.extend(speeds().map(|name| format!("a.{name}")));
+        for cut in &mechanism.loops {
+            names.extend(cut.components.iter().map(|c| format!("lambda.{}.{c}", cut.name)));
+        }
+        if with_reactions {
+            for joint in &mechanism.joints {
+                names.extend(["fx", "fy", "fz", "nx", "ny", "nz"].map(|c| format!("reaction.{}.{c}", joint.name)));
+            }
+        }
+        names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
+        names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
+        if !mechanism.loops.is_empty() {
+            names.extend(["position", "velocity"].map(|c| format!("violation.{c}")));
+        }
+        names
+    }
+}
+
+fn replace(target: &mut Vec<f64>, source: &[f64]) {
+    target.clear();
+    target.extend_from_slice(source);
+}
+
+impl Observation {
+    /// Kinetic, potential and stored energy less the work done: constant for every mechanism \[J\].
+    pub fn energy_balance(&self) -> f64 {
+        self.energy.total() - self.work
+    }
+
+    /// Writes all numbers in the order of [`Simulation::columns`].
+    pub fn write(&self, with_reactions: bool, row: &mut Vec<f64>) {
+        row.clear();
+        row.push(self.t);
+        row.extend(self.q.iter().chain(&self.v).chain(&self.a).chain(&self.multipliers));
+        if with_reactions {
+            for reaction in &self.reactions {
+                row.extend(reaction.force.iter().chain(reaction.torque.iter()));
+            }
+        }
+        row.extend(&self.friction);
+        let energy = &self.energy;
+        row.extend([energy.kinetic, energy.potential, energy.elastic, self.work]);
+        if !self.multipliers.is_empty() {
+            row.extend([self.violation.0, self.violation.1]);
+        }
+    }
+}
