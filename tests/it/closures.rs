@@ -2,7 +2,7 @@
 
 use linkdyn_kinematics::assembly::gradient;
 use linkdyn_kinematics::{
-    Accelerations, Attachment, Closure, Joint, LinkId, Pose, Positions, Row, Tree, Twist, Velocities, Wrench,
+    Accelerations, Attachment, Closure, Freedom, Joint, LinkId, Pose, Positions, Row, Tree, Twist, Velocities, Wrench,
 };
 use linkdyn_tests::numbers::{derivative, largest};
 use linkdyn_tests::{Blueprint, strategies};
@@ -128,6 +128,41 @@ proptest! {
                 // The same products in another order, levers of some metres.
                 prop_assert!(gap.abs() < 1e-13, "row {row}, speed {i}: {gap:e}");
             }
+        }
+    }
+
+    #[test]
+    fn a_freedom_is_on_the_side_whose_frame_it_moves_alone(blueprint in cut()) {
+        let state = State::new(&blueprint);
+        let positions = state.positions(&state.here());
+        let (one, two) = (state.closure.predecessor().link.node(), state.closure.successor().link.node());
+        let path: Vec<usize> = state.closure.path().collect();
+        for (i, node) in state.tree.nodes().iter().enumerate() {
+            if node.freedom == Freedom::None {
+                prop_assert!(state.closure.side(i) == 0.0 && !path.contains(&i));
+                continue;
+            }
+            let moves = |end| unit_twist(&state.tree, &positions, end, node.speed) != Twist::zero();
+            let side = f64::from(u8::from(moves(one))) - f64::from(u8::from(moves(two)));
+            prop_assert_eq!(state.closure.side(i), side);
+            prop_assert_eq!(path.contains(&i), side != 0.0);
+        }
+    }
+
+    #[test]
+    fn ends_are_the_frames_of_the_attachments(blueprint in cut()) {
+        let state = State::new(&blueprint);
+        let positions = state.positions(&state.here());
+        let place = |attachment: &Attachment| {
+            let node = &positions.nodes()[attachment.link.node()];
+            node.origin + node.rotation * attachment.pose.origin
+        };
+        let ends = state.closure.ends(&positions);
+        prop_assert!((ends.one() - place(state.closure.predecessor())).amax() < 1e-14);
+        prop_assert!((ends.two() - place(state.closure.successor())).amax() < 1e-14);
+        let phi = state.residual(&state.here());
+        if let Some(Row::Coincident) = state.closure.rows().first() {
+            prop_assert_eq!(ends.one() - ends.two(), phi.fixed_rows::<3>(0).into_owned());
         }
     }
 

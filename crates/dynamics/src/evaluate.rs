@@ -173,12 +173,12 @@ impl System {
         for closure in &self.closures {
             let range = first..first + closure.equations();
             if !lagrange {
-                let stride = work.columns.stride();
-                closure.gradient(&self.tree, positions, work.columns.flat_mut(), stride, 1 + first);
-                closure.bias(
+                let columns = &mut work.columns;
+                closure.gradient_and_bias(
                     positions,
                     velocities,
                     &work.biases,
+                    |speed, equation, value| *columns.at_mut(speed, 1 + first + equation) = value,
                     &mut work.constraint.gamma[range.clone()],
                 );
             }

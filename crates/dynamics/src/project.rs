@@ -116,10 +116,11 @@ impl System {
             return;
         }
         work.columns.clear();
-        let stride = work.columns.stride();
         let mut first = 0;
         for closure in &self.closures {
-            closure.gradient(&self.tree, &work.positions, work.columns.flat_mut(), stride, 1 + first);
+            closure.gradient(&work.positions, |speed, equation, value| {
+                *work.columns.at_mut(speed, 1 + first + equation) = value;
+            });
             first += closure.equations();
         }
         match &mut work.mass {

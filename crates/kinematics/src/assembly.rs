@@ -156,7 +156,9 @@ pub fn gradient(tree: &Tree, closures: &[Closure], positions: &Positions) -> DMa
     let mut transposed = vec![0.0; m * tree.speeds()];
     let mut first = 0;
     for closure in closures {
-        closure.gradient(tree, positions, &mut transposed, m, first);
+        closure.gradient(positions, |speed, equation, value| {
+            transposed[speed * m + first + equation] = value;
+        });
         first += closure.equations();
     }
     // Speed-major storage is the column-major form of G.

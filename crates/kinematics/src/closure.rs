@@ -8,7 +8,7 @@
 use crate::joint::Joint;
 use crate::motion::{Accelerations, Positions, Velocities};
 use crate::tree::{Freedom, LinkId, Tree};
-use crate::{Pose, Wrench};
+use crate::{Pose, Twist, Wrench};
 use nalgebra::{Unit, Vector3};
 
 /// A frame fixed on a link.
@@ -45,7 +45,8 @@ pub enum Row {
 }
 
 impl Row {
-    fn count(&self) -> usize {
+    /// Number of equations.
+    pub fn equations(&self) -> usize {
         match self {
             Row::Coincident => 3,
             Row::Along { .. } | Row::Angle { .. } => 1,
@@ -60,14 +61,41 @@ pub struct Closure {
     successor: Attachment,
     rows: Vec<Row>,
     equations: usize,
-    /// Nodes whose freedom moves one side only: (node, +1 for the predecessor or -1 for the successor).
-    path: Vec<(usize, f64)>,
+    /// Freedoms that move the predecessor only.
+    on_predecessor: Vec<Mover>,
+    /// Freedoms that move the successor only.
+    on_successor: Vec<Mover>,
 }
 
-/// A side of the closure in motion.
-struct Side {
-    point: Vector3<f64>,
-    arm: Vector3<f64>,
+/// A freedom that moves one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mover {
+    node: usize,
+    speed: usize,
+    freedom: Freedom,
+}
+
+/// Where the two frames of a closure are, and where they are seen from the nodes that carry them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ends {
+    one: Vector3<f64>,
+    two: Vector3<f64>,
+    arm_one: Vector3<f64>,
+    arm_two: Vector3<f64>,
+}
+
+impl Ends {
+    /// Origin of the predecessor's frame \[m\].
+    #[inline]
+    pub fn one(&self) -> Vector3<f64> {
+        self.one
+    }
+
+    /// Origin of the successor's frame \[m\].
+    #[inline]
+    pub fn two(&self) -> Vector3<f64> {
+        self.two
+    }
 }
 
 impl Closure {
@@ -85,20 +113,25 @@ impl Closure {
     /// # Panics
     /// If a link is not of this tree.
     pub fn with_rows(tree: &Tree, predecessor: Attachment, successor: Attachment, rows: Vec<Row>) -> Self {
-        let one: Vec<usize> = tree.path(predecessor.link).collect();
-        let two: Vec<usize> = tree.path(successor.link).collect();
-        let mut path: Vec<(usize, f64)> = Vec::new();
-        // Freedoms below both sides carry the whole loop along and drop out.
-        path.extend(one.iter().filter(|n| !two.contains(n)).map(|&n| (n, 1.0)));
-        path.extend(two.iter().filter(|n| !one.contains(n)).map(|&n| (n, -1.0)));
-        path.sort_by_key(|&(node, _)| node);
-        let equations = rows.iter().map(Row::count).sum();
+        let movers = |link: LinkId, other: LinkId| -> Vec<Mover> {
+            // Freedoms below both sides carry the whole loop along and drop out.
+            let alone = tree
+                .path(link)
+                .filter(|node| !tree.path(other).any(|below| below == *node));
+            let mover = |node| Mover {
+                node,
+                speed: tree.nodes()[node].speed,
+                freedom: tree.nodes()[node].freedom,
+            };
+            alone.map(mover).collect()
+        };
         Self {
+            on_predecessor: movers(predecessor.link, successor.link),
+            on_successor: movers(successor.link, predecessor.link),
+            equations: rows.iter().map(Row::equations).sum(),
             predecessor,
             successor,
             rows,
-            equations,
-            path,
         }
     }
 
@@ -122,9 +155,12 @@ impl Closure {
         &self.successor
     }
 
-    /// Nodes whose freedoms move the closure, in ascending order.
+    /// Nodes whose freedoms move the closure.
     pub fn path(&self) -> impl Iterator<Item = usize> + '_ {
-        self.path.iter().map(|&(node, _)| node)
+        self.on_predecessor
+            .iter()
+            .chain(&self.on_successor)
+            .map(|mover| mover.node)
     }
 
     /// Names of the multipliers, one an equation.
@@ -147,13 +183,17 @@ impl Closure {
         names
     }
 
+    /// Where the two frames are.
     #[inline]
-    fn side(&self, attachment: &Attachment, positions: &Positions) -> Side {
-        let node = &positions.0[attachment.link.node()];
-        let arm = node.rotation * attachment.pose.origin;
-        Side {
-            point: node.origin + arm,
-            arm,
+    pub fn ends(&self, positions: &Positions) -> Ends {
+        let (p, s) = (&self.predecessor, &self.successor);
+        let (one, two) = (&positions.0[p.link.node()], &positions.0[s.link.node()]);
+        let (arm_one, arm_two) = (one.rotation * p.pose.origin, two.rotation * s.pose.origin);
+        Ends {
+            one: one.origin + arm_one,
+            two: two.origin + arm_two,
+            arm_one,
+            arm_two,
         }
     }
 
@@ -165,7 +205,8 @@ impl Closure {
     /// Residual `phi`, one number an equation \[m or -\].
     pub fn residual(&self, positions: &Positions, phi: &mut [f64]) {
         let (p, s) = (&self.predecessor, &self.successor);
-        let gap = self.side(p, positions).point - self.side(s, positions).point;
+        let ends = self.ends(positions);
+        let gap = ends.one - ends.two;
         let mut k = 0;
         for row in &self.rows {
             match row {
@@ -180,17 +221,17 @@ impl Closure {
                     phi[k] = a.dot(&self.direction(s, positions, on_successor)) - cosine;
                 }
             }
-            k += row.count();
+            k += row.equations();
         }
     }
 
     /// Rate `phi' = G v` \[m/s or 1/s\].
     pub fn rate(&self, positions: &Positions, velocities: &Velocities, rate: &mut [f64]) {
         let (p, s) = (&self.predecessor, &self.successor);
-        let (one, two) = (self.side(p, positions), self.side(s, positions));
+        let ends = self.ends(positions);
         let (v_one, v_two) = (&velocities.0[p.link.node()], &velocities.0[s.link.node()]);
-        let gap = one.point - two.point;
-        let gap_rate = v_one.linear + v_one.angular.cross(&one.arm) - v_two.linear - v_two.angular.cross(&two.arm);
+        let gap = ends.one - ends.two;
+        let gap_rate = gap_rate(v_one, v_two, &ends);
         let mut k = 0;
         for row in &self.rows {
             match row {
@@ -209,49 +250,69 @@ impl Closure {
                     rate[k] = (v_one.angular - v_two.angular).dot(&a.cross(&b));
                 }
             }
-            k += row.count();
+            k += row.equations();
         }
     }
 
-    /// Gradient: `G^T`, written as `gradient[speed * stride + first + equation]` for the speeds on the closure's path; other
-    /// entries are not touched (they are zero).
+    /// Gradient `G`: `put` is told speed, equation and entry for the speeds on the closure's path; all others are zero.
     #[inline]
-    pub fn gradient(&self, tree: &Tree, positions: &Positions, gradient: &mut [f64], stride: usize, first: usize) {
-        let (p, s) = (&self.predecessor, &self.successor);
-        let one = self.side(p, positions).point;
-        let two = self.side(s, positions).point;
-        let mut k = first;
+    pub fn gradient(&self, positions: &Positions, put: impl FnMut(usize, usize, f64)) {
+        self.gradient_at(&self.ends(positions), positions, put);
+    }
+
+    #[inline]
+    fn gradient_at(&self, ends: &Ends, positions: &Positions, mut put: impl FnMut(usize, usize, f64)) {
+        let mut k = 0;
         for row in &self.rows {
             if let Row::Coincident = row {
-                for &(i, sign) in &self.path {
-                    let (node, here) = (&tree.nodes()[i], &positions.0[i]);
-                    let column = match node.freedom {
-                        Freedom::Linear => here.axis * sign,
-                        _ => {
-                            let point = if sign > 0.0 { one } else { two };
-                            here.axis.cross(&(point - here.origin)) * sign
-                        }
+                let mut put_column = |mover: &Mover, column: Vector3<f64>| {
+                    (0..3).for_each(|l| put(mover.speed, k + l, column[l]));
+                };
+                for mover in &self.on_predecessor {
+                    let here = &positions.0[mover.node];
+                    let column = match mover.freedom {
+                        Freedom::Linear => here.axis,
+                        _ => here.axis.cross(&(ends.one - here.origin)),
                     };
-                    let at = node.speed * stride + k;
-                    gradient[at..at + 3].copy_from_slice(column.as_slice());
+                    put_column(mover, column);
+                }
+                for mover in &self.on_successor {
+                    let here = &positions.0[mover.node];
+                    let column = match mover.freedom {
+                        Freedom::Linear => -here.axis,
+                        _ => (ends.two - here.origin).cross(&here.axis),
+                    };
+                    put_column(mover, column);
                 }
             } else {
                 let unit = self.unit_wrench(row, positions);
-                for &(i, sign) in &self.path {
-                    let (node, here) = (&tree.nodes()[i], &positions.0[i]);
-                    gradient[node.speed * stride + k] = sign
-                        * match node.freedom {
-                            Freedom::Linear => here.axis.dot(&unit.force),
-                            _ => here.axis.dot(&unit.shifted(&(two - here.origin)).torque),
-                        };
+                let share = |mover: &Mover| {
+                    let here = &positions.0[mover.node];
+                    match mover.freedom {
+                        Freedom::Linear => here.axis.dot(&unit.force),
+                        _ => here.axis.dot(&unit.shifted(&(ends.two - here.origin)).torque),
+                    }
+                };
+                for mover in &self.on_predecessor {
+                    put(mover.speed, k, share(mover));
+                }
+                for mover in &self.on_successor {
+                    put(mover.speed, k, -share(mover));
                 }
             }
-            k += row.count();
+            k += row.equations();
         }
     }
 
+    /// Which frame the freedom of `node` moves: 1 for the predecessor's, -1 for the successor's, 0 for none or both.
+    pub fn side(&self, node: usize) -> f64 {
+        let moves = |movers: &[Mover]| movers.iter().any(|mover| mover.node == node);
+        f64::from(i8::from(moves(&self.on_predecessor)) - i8::from(moves(&self.on_successor)))
+    }
+
     /// The wrench on the predecessor that a unit multiplier of a one-equation row stands for, at the successor's point.
-    fn unit_wrench(&self, row: &Row, positions: &Positions) -> Wrench {
+    #[inline]
+    pub fn unit_wrench(&self, row: &Row, positions: &Positions) -> Wrench {
         let mut unit = Wrench::zero();
         match row {
             Row::Coincident => {}
@@ -270,28 +331,50 @@ impl Closure {
 
     /// Bias `gamma`: the second rate of `phi` for vanishing rates of the speeds, so that `phi'' = G v' + gamma`.
     /// `biases` are those of [`Tree::sweep`]; a common base acceleration cancels.
-    #[inline]
     pub fn bias(&self, positions: &Positions, velocities: &Velocities, biases: &Accelerations, gamma: &mut [f64]) {
+        self.bias_at(&self.ends(positions), positions, velocities, biases, gamma);
+    }
+
+    /// [`Closure::gradient`] and [`Closure::bias`] in one.
+    #[inline]
+    pub fn gradient_and_bias(
+        &self,
+        positions: &Positions,
+        velocities: &Velocities,
+        biases: &Accelerations,
+        put: impl FnMut(usize, usize, f64),
+        gamma: &mut [f64],
+    ) {
+        let ends = self.ends(positions);
+        self.gradient_at(&ends, positions, put);
+        self.bias_at(&ends, positions, velocities, biases, gamma);
+    }
+
+    #[inline]
+    fn bias_at(
+        &self,
+        ends: &Ends,
+        positions: &Positions,
+        velocities: &Velocities,
+        biases: &Accelerations,
+        gamma: &mut [f64],
+    ) {
         let (p, s) = (&self.predecessor, &self.successor);
-        let (one, two) = (self.side(p, positions), self.side(s, positions));
         let (v_one, v_two) = (&velocities.0[p.link.node()], &velocities.0[s.link.node()]);
         let (a_one, a_two) = (&biases.0[p.link.node()], &biases.0[s.link.node()]);
         let spin = |w: &Vector3<f64>, a: &Vector3<f64>, r: &Vector3<f64>| a.cross(r) + w.cross(&w.cross(r));
-        let gap_second = a_one.linear + spin(&v_one.angular, &a_one.angular, &one.arm)
+        let gap_second = a_one.linear + spin(&v_one.angular, &a_one.angular, &ends.arm_one)
             - a_two.linear
-            - spin(&v_two.angular, &a_two.angular, &two.arm);
+            - spin(&v_two.angular, &a_two.angular, &ends.arm_two);
         let mut k = 0;
         for row in &self.rows {
             match row {
                 Row::Coincident => gamma[k..k + 3].copy_from_slice(gap_second.as_slice()),
                 Row::Along { axis } => {
                     let u = self.direction(p, positions, axis);
-                    let gap = one.point - two.point;
-                    let gap_rate =
-                        v_one.linear + v_one.angular.cross(&one.arm) - v_two.linear - v_two.angular.cross(&two.arm);
                     gamma[k] = u.dot(&gap_second)
-                        + 2.0 * v_one.angular.cross(&u).dot(&gap_rate)
-                        + spin(&v_one.angular, &a_one.angular, &u).dot(&gap);
+                        + 2.0 * v_one.angular.cross(&u).dot(&gap_rate(v_one, v_two, ends))
+                        + spin(&v_one.angular, &a_one.angular, &u).dot(&(ends.one - ends.two));
                 }
                 Row::Angle {
                     on_predecessor,
@@ -305,24 +388,24 @@ impl Closure {
                         + a.dot(&spin(&v_two.angular, &a_two.angular, &b));
                 }
             }
-            k += row.count();
+            k += row.equations();
         }
     }
 
     /// The wrenches that multipliers exert on the predecessor and on the successor, each at its node's origin.
     #[inline]
     pub fn wrenches(&self, positions: &Positions, multipliers: &[f64]) -> (Wrench, Wrench) {
-        let (p, s) = (&self.predecessor, &self.successor);
-        let (one, two) = (self.side(p, positions), self.side(s, positions));
+        let p = &self.predecessor;
+        let ends = self.ends(positions);
         let (mut on_one, mut on_two) = (Wrench::zero(), Wrench::zero());
         let mut k = 0;
         for row in &self.rows {
             if let Row::Coincident = row {
                 let force = Vector3::new(multipliers[k], multipliers[k + 1], multipliers[k + 2]);
                 on_one.force += force;
-                on_one.torque += one.arm.cross(&force);
+                on_one.torque += ends.arm_one.cross(&force);
                 on_two.force -= force;
-                on_two.torque -= two.arm.cross(&force);
+                on_two.torque -= ends.arm_two.cross(&force);
             } else {
                 let unit = self.unit_wrench(row, positions);
                 let size = multipliers[k];
@@ -330,13 +413,18 @@ impl Closure {
                     torque: unit.torque * size,
                     force: unit.force * size,
                 };
-                on_one += load.shifted(&(two.point - positions.0[p.link.node()].origin));
-                on_two -= load.shifted(&two.arm);
+                on_one += load.shifted(&(ends.two - positions.0[p.link.node()].origin));
+                on_two -= load.shifted(&ends.arm_two);
             }
-            k += row.count();
+            k += row.equations();
         }
         (on_one, on_two)
     }
+}
+
+#[inline]
+fn gap_rate(v_one: &Twist, v_two: &Twist, ends: &Ends) -> Vector3<f64> {
+    v_one.linear + v_one.angular.cross(&ends.arm_one) - v_two.linear - v_two.angular.cross(&ends.arm_two)
 }
 
 /// The equations of a cut joint: as many as the joint takes freedoms away.

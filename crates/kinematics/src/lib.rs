@@ -12,7 +12,7 @@ mod pose;
 mod spatial;
 mod tree;
 
-pub use closure::{Attachment, Closure, Row};
+pub use closure::{Attachment, Closure, Ends, Row};
 pub use derivatives::Transforms;
 pub use joint::Joint;
 pub use motion::{Accelerations, NodePosition, Positions, Velocities};
