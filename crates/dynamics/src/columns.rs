@@ -1,71 +1,73 @@
-//! Many right-hand sides at once: rows of columns, padded to a multiple of four so that one row operation is a few wide
-//! instructions.
+//! Many right-hand sides at once: rows of columns in fours.
 
-const LANES: usize = 4;
+use crate::lanes::{Four, at, at_mut};
 
-/// A row-major array with one row a speed and any number of columns.
+/// Calls `$f(n)` with `n` a constant where it is small: the compiler then unrolls what is one plain text.
+macro_rules! sized {
+    ($n:expr, [$($small:literal),*], $f:expr) => {
+        match $n {
+            $($small => $f($small),)*
+            n => $f(n),
+        }
+    };
+}
+pub(crate) use sized;
+
+/// A row-major array with one row a speed (or an equation) and any number of columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
-    stride: usize,
-    data: Vec<f64>,
+    /// Fours in a row.
+    width: usize,
+    fours: Vec<Four>,
 }
 
 impl Columns {
     pub fn new(rows: usize, columns: usize) -> Self {
-        let stride = columns.next_multiple_of(LANES);
+        let width = columns.div_ceil(4);
         Self {
-            stride,
-            data: vec![0.0; rows * stride],
+            width,
+            fours: vec![Four::ZERO; rows * width],
         }
     }
 
     #[inline]
     pub fn clear(&mut self) {
-        self.data.fill(0.0);
+        self.fours.fill(Four::ZERO);
     }
 
-    /// Distance of two rows in [`Columns::flat_mut`].
+    /// Fours in a row.
     #[inline]
-    pub fn stride(&self) -> usize {
-        self.stride
+    pub fn width(&self) -> usize {
+        self.width
     }
 
     /// All numbers, row by row.
     #[inline]
-    pub fn flat_mut(&mut self) -> &mut [f64] {
-        &mut self.data
+    pub fn fours(&self) -> &[Four] {
+        &self.fours
     }
 
-    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.data.chunks_exact(self.stride)
+    #[inline]
+    pub fn fours_mut(&mut self) -> &mut [Four] {
+        &mut self.fours
     }
 
     #[inline]
     pub fn at(&self, row: usize, column: usize) -> f64 {
-        self.data[row * self.stride + column]
+        at(&self.fours, 4 * row * self.width + column)
     }
 
     #[inline]
     pub fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
-        &mut self.data[row * self.stride + column]
+        at_mut(&mut self.fours, 4 * row * self.width + column)
     }
+}
 
-    /// `row(target) -= factor * row(source)`.
-    #[inline]
-    pub fn subtract(&mut self, target: usize, factor: f64, source: usize) {
-        match self.stride {
-            LANES => self.subtract_sized(LANES, target, factor, source),
-            stride => self.subtract_sized(stride, target, factor, source),
-        }
-    }
-
-    #[inline(always)]
-    fn subtract_sized(&mut self, stride: usize, target: usize, factor: f64, source: usize) {
-        let (head, tail) = self.data.split_at_mut(target.max(source) * stride);
-        let (low, high) = (&mut head[target.min(source) * stride..][..stride], &mut tail[..stride]);
-        let (target, source) = if target < source { (low, high) } else { (high, low) };
-        for (x, y) in target.iter_mut().zip(source) {
-            *x -= factor * *y;
-        }
+/// `row(target) -= factor * row(source)` in an array with `width` fours a row.
+#[inline(always)]
+pub(crate) fn subtract(fours: &mut [Four], width: usize, target: usize, factor: f64, source: usize) {
+    for c in 0..width {
+        let share = fours[source * width + c] * factor;
+        fours[target * width + c] -= share;
     }
 }

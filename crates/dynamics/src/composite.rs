@@ -1,7 +1,7 @@
 //! Composite-body recursion \[Featherstone 2008, ch. 6\]: the mass matrix of a tree, factored as `M = L^T D L` without fill-in
 //! \[Featherstone 2008, ch. 6.5\]. Cheapest for short branches; the cost grows with the square of their depth.
 
-use crate::columns::Columns;
+use crate::columns::{Columns, sized, subtract};
 use crate::symmetric::SpatialInertia;
 use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Wrench};
 
@@ -17,6 +17,8 @@ pub(crate) struct Composite {
     speeds: usize,
     /// Nearest speed below each speed on the way to the ground, or [`NONE`].
     below: Vec<usize>,
+    /// All pairs of a speed and one below it, the highest first.
+    pairs: Vec<(usize, usize)>,
     /// Row-major lower triangle: the mass matrix, then `L` (unit diagonal not stored).
     matrix: Vec<f64>,
     /// Pivots up to here are rounding: the freedom moves no mass.
@@ -39,8 +41,14 @@ impl Composite {
                 below[node.speed] = tree.nodes()[parent].speed;
             }
         }
+        let ways = |i: usize| {
+            std::iter::successors(below.get(i), |&&j| below.get(j))
+                .copied()
+                .take_while(|&j| j != NONE)
+        };
         Self {
             speeds: n,
+            pairs: (0..n).rev().flat_map(|i| ways(i).map(move |j| (i, j))).collect(),
             below,
             matrix: vec![0.0; n * n],
             floor: vec![0.0; n],
@@ -141,27 +149,25 @@ impl Composite {
     /// `L^-T` on all columns.
     #[inline]
     pub fn inward(&self, columns: &mut Columns) {
-        let n = self.speeds;
-        for i in (0..n).rev() {
-            let mut j = self.below[i];
-            while j != NONE {
-                columns.subtract(j, self.matrix[i * n + j], i);
-                j = self.below[j];
+        let (n, width) = (self.speeds, columns.width());
+        let fours = columns.fours_mut();
+        sized!(width, [1, 2], |width| {
+            for &(i, j) in &self.pairs {
+                subtract(fours, width, j, self.matrix[i * n + j], i);
             }
-        }
+        });
     }
 
     /// `L^-1` on all columns.
     #[inline]
     pub fn outward(&self, columns: &mut Columns) {
-        let n = self.speeds;
-        for i in 0..n {
-            let mut j = self.below[i];
-            while j != NONE {
-                columns.subtract(i, self.matrix[i * n + j], j);
-                j = self.below[j];
+        let (n, width) = (self.speeds, columns.width());
+        let fours = columns.fours_mut();
+        sized!(width, [1, 2], |width| {
+            for &(i, j) in self.pairs.iter().rev() {
+                subtract(fours, width, i, self.matrix[i * n + j], j);
             }
-        }
+        });
     }
 }
 

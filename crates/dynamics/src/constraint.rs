@@ -3,11 +3,9 @@
 //! With `M = L^T D L` and `W = L^-T G^T` the multipliers solve `S lambda = -(gamma + W^T D^-1 b)`, `S = W^T D^-1 W`, where
 //! `b` are the generalised forces taken inward. Redundant equations make `S` singular; then the multipliers of smallest norm
 //! are taken, and the accelerations are the same whichever equation one would drop.
-//!
-//! Loops run over the number of equations `m`, which the small cases hand down as a constant: the compiler then unrolls
-//! what is one plain text.
 
-use crate::columns::Columns;
+use crate::columns::{Columns, sized, subtract};
+use crate::lanes::{Four, at};
 use crate::linear::{cholesky, cholesky_solve};
 
 /// A pivot of `S` below this share of the largest diagonal counts as zero: the equation is redundant. `S` holds squares, so
@@ -19,28 +17,19 @@ const DOUBTFUL: f64 = 1e-5;
 /// A diagonal of `S` below this share of `trace(D^-1)` stands for levers of 1e-12 m: rounding of an equation that nothing moves.
 const NOTHING: f64 = 1e-24;
 
-/// Calls `$f($m, ..)` with `$m` a constant where it is small.
-macro_rules! sized {
-    ($m:expr, $f:expr) => {
-        match $m {
-            1 => $f(1),
-            2 => $f(2),
-            3 => $f(3),
-            4 => $f(4),
-            5 => $f(5),
-            6 => $f(6),
-            m => $f(m),
-        }
-    };
-}
-
 /// Factors of `S`, and the multipliers.
 #[derive(Clone, Debug)]
 pub(crate) struct Multipliers {
     m: usize,
-    /// Factors `L D L^T` of `S`, row-major lower triangle.
-    schur: Vec<f64>,
+    /// `W^T D^-1` times the columns taken inward, a row each equation: `S` in columns 1..=m, beside it what it has to be
+    /// solved for. Gauss elimination turns all of it at once into upper triangle and reduced right-hand sides.
+    tableau: Columns,
+    /// Diagonal of `S`.
+    diagonal: Vec<f64>,
+    /// Inverse pivots.
     inverse: Vec<f64>,
+    /// Multipliers for each column (those of columns 1..=m mean nothing).
+    all: Columns,
     pub gamma: Vec<f64>,
     pub lambda: Vec<f64>,
     rank: usize,
@@ -61,10 +50,13 @@ struct Singular {
 }
 
 impl Multipliers {
-    pub fn new(m: usize) -> Self {
+    /// For `m` equations and so many columns in all.
+    pub fn new(m: usize, columns: usize) -> Self {
         Self {
             m,
-            schur: vec![0.0; m * m],
+            tableau: Columns::new(m, columns),
+            diagonal: vec![0.0; m],
+            all: Columns::new(m, columns),
             inverse: vec![0.0; m],
             gamma: vec![0.0; m],
             lambda: vec![0.0; m],
@@ -87,52 +79,71 @@ impl Multipliers {
         self.m - self.rank
     }
 
-    /// Sets up and factors `S` from right-hand sides taken inward, of which columns 1..=m are `W`.
-    #[inline]
-    pub fn factor(&mut self, inward: &Columns, inverse_diagonal: &[f64]) {
-        sized!(self.m, |m| self.factor_sized(m, inward, inverse_diagonal));
+    /// Multipliers for all columns, a row each equation; see [`Multipliers::solve_all`].
+    pub fn all(&self) -> &Columns {
+        &self.all
     }
 
-    #[inline(always)]
-    fn factor_sized(&mut self, m: usize, inward: &Columns, inverse_diagonal: &[f64]) {
-        self.assemble(m, inward, inverse_diagonal);
-        (self.rank, self.pivoted) = (m, false);
-        let floor = NOTHING * inverse_diagonal.iter().sum::<f64>();
-        for j in 0..m {
-            let (head, tail) = self.schur.split_at_mut(j * m);
-            let row = &mut tail[..=j];
-            // Row j holds L_jk D_k until its pivot is known.
-            for k in 0..j {
-                for i in 0..k {
-                    row[k] -= head[k * m + i] * row[i];
-                }
-            }
-            let diagonal = row[j];
-            let mut pivot = diagonal;
-            for k in 0..j {
-                let l = row[k] * self.inverse[k];
-                pivot -= l * row[k];
-                row[k] = l;
-            }
-            if pivot.is_nan() || pivot <= DOUBTFUL * diagonal || diagonal <= floor {
-                return self.factor_singular(inward, inverse_diagonal);
-            }
-            self.inverse[j] = 1.0 / pivot;
+    /// Adds the multipliers for forces in the columns from `first` on.
+    #[inline]
+    pub fn add_loads(&mut self, first: usize, forces: &[f64]) {
+        for (k, lambda) in self.lambda.iter_mut().enumerate() {
+            let shares = forces
+                .iter()
+                .enumerate()
+                .map(|(j, force)| self.all.at(k, first + j) * force);
+            *lambda += shares.sum::<f64>();
         }
     }
 
-    /// Lower triangle of `S`.
+    /// Sets up and factors `S` from columns taken inward, of which 1..=m are `W`. The closure bias counts in column 0.
+    #[inline]
+    pub fn factor(&mut self, inward: &Columns, inverse_diagonal: &[f64]) {
+        sized!(self.m, [1, 2, 3, 4, 5, 6], |m| {
+            sized!(inward.width(), [1, 2], |width| self.factor_sized(
+                m,
+                width,
+                inward,
+                inverse_diagonal
+            ))
+        });
+    }
+
     #[inline(always)]
-    fn assemble(&mut self, m: usize, inward: &Columns, inverse_diagonal: &[f64]) {
-        self.schur.fill(0.0);
-        for (row, inverse) in inward.rows().zip(inverse_diagonal) {
-            let w = &row[1..=m];
-            for i in 0..m {
-                let scaled = w[i] * inverse;
-                for j in 0..=i {
-                    self.schur[i * m + j] += scaled * w[j];
-                }
+    fn factor_sized(&mut self, m: usize, width: usize, inward: &Columns, inverse_diagonal: &[f64]) {
+        self.assemble(m, width, inward, inverse_diagonal);
+        (self.rank, self.pivoted) = (m, false);
+        let floor = NOTHING * inverse_diagonal.iter().sum::<f64>();
+        let tableau = &mut self.tableau.fours_mut()[..m * width];
+        let (inverse, diagonal) = (&mut self.inverse[..m], &self.diagonal[..m]);
+        for i in 0..m {
+            let pivot = at(&tableau[i * width..], 1 + i);
+            if pivot.is_nan() || pivot <= DOUBTFUL * diagonal[i] || diagonal[i] <= floor {
+                return self.factor_singular(inward, inverse_diagonal);
             }
+            inverse[i] = 1.0 / pivot;
+            for k in i + 1..m {
+                let factor = at(&tableau[i * width..], 1 + k) * inverse[i];
+                subtract(tableau, width, k, factor, i);
+            }
+        }
+    }
+
+    /// The tableau before elimination.
+    #[inline(always)]
+    fn assemble(&mut self, m: usize, width: usize, inward: &Columns, inverse_diagonal: &[f64]) {
+        let tableau = &mut self.tableau.fours_mut()[..m * width];
+        let (diagonal, gamma) = (&mut self.diagonal[..m], &self.gamma[..m]);
+        for k in 0..m {
+            for c in 0..width {
+                let mut sum = Four::ZERO;
+                for (row, inverse) in inward.fours().chunks_exact(width).zip(inverse_diagonal) {
+                    sum += row[c] * (at(row, 1 + k) * inverse);
+                }
+                tableau[k * width + c] = sum;
+            }
+            tableau[k * width].0[0] += gamma[k];
+            diagonal[k] = at(&tableau[k * width..], 1 + k);
         }
     }
 
@@ -140,9 +151,9 @@ impl Multipliers {
     #[cold]
     fn factor_singular(&mut self, inward: &Columns, inverse_diagonal: &[f64]) {
         let m = self.m;
-        self.assemble(m, inward, inverse_diagonal);
+        self.assemble(m, inward.width(), inward, inverse_diagonal);
         let s = &mut self.singular;
-        let entry = |i: usize, j: usize| self.schur[i.max(j) * m + i.min(j)];
+        let entry = |i: usize, j: usize| self.tableau.at(i.max(j), 1 + i.min(j));
         let floor = NOTHING * inverse_diagonal.iter().sum::<f64>();
         let largest = (0..m).map(|i| entry(i, i)).fold(0.0, f64::max);
         s.order.iter_mut().enumerate().for_each(|(i, o)| *o = i);
@@ -174,27 +185,23 @@ impl Multipliers {
     }
 
     /// Replaces `lambda` by `S^-1 lambda`; the shortest least-squares solution when `S` is singular.
-    #[inline]
     pub fn solve(&mut self) {
-        sized!(self.m, |m| self.solve_sized(m));
-    }
-
-    #[inline(always)]
-    fn solve_sized(&mut self, m: usize) {
+        let m = self.m;
         if self.pivoted {
             return self.solve_singular();
         }
-        let (l, b) = (&self.schur[..m * m], &mut self.lambda[..m]);
+        let (u, b) = (&self.tableau, &mut self.lambda);
         for i in 0..m {
-            for k in 0..i {
-                b[i] -= l[i * m + k] * b[k];
+            let share = b[i] * self.inverse[i];
+            for k in i + 1..m {
+                b[k] -= u.at(i, 1 + k) * share;
             }
         }
         for i in (0..m).rev() {
-            b[i] *= self.inverse[i];
             for k in i + 1..m {
-                b[i] -= l[k * m + i] * b[k];
+                b[i] -= u.at(i, 1 + k) * b[k];
             }
+            b[i] *= self.inverse[i];
         }
     }
 
@@ -212,60 +219,69 @@ impl Multipliers {
         }
     }
 
-    /// Multipliers and pivot-divided rates for one right-hand side: `lambda = -S^-1 (bias + W^T D^-1 b)` and
-    /// `D^-1 (b + W lambda)`, the latter into the same column of `solutions`. The closure bias counts `with_bias`.
+    /// Multipliers and pivot-divided rates for all columns: `lambda = -S^-1 (bias + W^T D^-1 b)` and `D^-1 (b + W lambda)`,
+    /// the latter into `solutions`. What becomes of `W` itself means nothing.
     #[inline]
-    pub fn solve_column(
-        &mut self,
-        column: usize,
-        with_bias: bool,
-        inward: &Columns,
-        inverse_diagonal: &[f64],
-        solutions: &mut Columns,
-    ) {
-        sized!(self.m, |m| self.solve_column_sized(
-            m,
-            column,
-            with_bias,
-            inward,
-            inverse_diagonal,
-            solutions
-        ));
+    pub fn solve_all(&mut self, inward: &Columns, inverse_diagonal: &[f64], solutions: &mut Columns) {
+        sized!(self.m, [0, 1, 2, 3, 4, 5, 6], |m| {
+            sized!(inward.width(), [1, 2], |width| self.solve_all_sized(
+                m,
+                width,
+                inward,
+                inverse_diagonal,
+                solutions
+            ))
+        });
     }
 
     #[inline(always)]
-    fn solve_column_sized(
+    fn solve_all_sized(
         &mut self,
         m: usize,
-        column: usize,
-        with_bias: bool,
+        width: usize,
         inward: &Columns,
         inverse_diagonal: &[f64],
         solutions: &mut Columns,
     ) {
-        if with_bias {
-            self.lambda.copy_from_slice(&self.gamma);
+        if self.pivoted {
+            self.solve_all_singular();
         } else {
-            self.lambda.fill(0.0);
-        }
-        for (row, inverse) in inward.rows().zip(inverse_diagonal) {
-            let b = row[column] * inverse;
-            let w = &row[1..=m];
-            for k in 0..m {
-                self.lambda[k] += w[k] * b;
+            let (u, inverse) = (&self.tableau.fours()[..m * width], &self.inverse[..m]);
+            let (all, lambda) = (&mut self.all.fours_mut()[..m * width], &mut self.lambda[..m]);
+            for i in (0..m).rev() {
+                for c in 0..width {
+                    let mut sum = u[i * width + c];
+                    for k in i + 1..m {
+                        sum += all[k * width + c] * at(&u[i * width..], 1 + k);
+                    }
+                    all[i * width + c] = sum * -inverse[i];
+                }
+                lambda[i] = all[i * width].0[0];
             }
         }
-        self.lambda.iter_mut().for_each(|x| *x = -*x);
-        self.solve_sized(m);
-        let stride = solutions.stride();
-        let targets = solutions.flat_mut().chunks_exact_mut(stride);
-        for ((target, row), inverse) in targets.zip(inward.rows()).zip(inverse_diagonal) {
-            let mut sum = row[column];
-            let w = &row[1..=m];
-            for k in 0..m {
-                sum += w[k] * self.lambda[k];
+        let all = &self.all.fours()[..m * width];
+        let rows = inward.fours().chunks_exact(width).zip(inverse_diagonal);
+        for (target, (row, inverse)) in solutions.fours_mut().chunks_exact_mut(width).zip(rows) {
+            for c in 0..width {
+                let mut sum = row[c];
+                for k in 0..m {
+                    sum += all[k * width + c] * at(row, 1 + k);
+                }
+                target[c] = sum * *inverse;
             }
-            target[column] = sum * inverse;
+        }
+    }
+
+    #[cold]
+    fn solve_all_singular(&mut self) {
+        for c in (0..4 * self.tableau.width()).rev() {
+            for k in 0..self.m {
+                self.lambda[k] = -self.tableau.at(k, c);
+            }
+            self.solve_singular();
+            for k in 0..self.m {
+                *self.all.at_mut(k, c) = self.lambda[k];
+            }
         }
     }
 }

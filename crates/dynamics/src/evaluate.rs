@@ -85,7 +85,8 @@ impl System {
                     .map_err(singular)?;
                 self.closure_columns(work);
                 if let MassFactor::Articulated(mass) = &mut work.mass {
-                    for column in 1..1 + self.equations + self.reaction_loads.len() {
+                    let first_unit = self.first_unit();
+                    for column in (1..=self.equations).chain(first_unit..first_unit + self.reaction_loads.len()) {
                         mass.inward(nodes, work.positions.nodes(), &mut work.columns, column);
                     }
                 }
@@ -199,7 +200,7 @@ impl System {
             first += closure.equations();
         }
         for (k, load) in self.reaction_loads.iter().enumerate() {
-            *work.columns.at_mut(load.speed, 1 + self.equations + k) = 1.0;
+            *work.columns.at_mut(load.speed, self.first_unit() + k) = 1.0;
         }
     }
 
@@ -210,15 +211,7 @@ impl System {
         if self.equations > 0 {
             work.constraint.factor(&work.columns, inverse);
         }
-        let units = 1 + self.equations..1 + self.equations + self.reaction_loads.len();
-        for (k, column) in units.enumerate() {
-            work.constraint
-                .solve_column(column, false, &work.columns, inverse, &mut work.solutions);
-            work.reaction_loop
-                .set_unit_multipliers(k, work.constraint.multipliers());
-        }
-        work.constraint
-            .solve_column(0, true, &work.columns, inverse, &mut work.solutions);
+        work.constraint.solve_all(&work.columns, inverse, &mut work.solutions);
         self.outward(work);
         for (speed, rate) in work.rates.iter_mut().enumerate() {
             *rate = work.solutions.at(speed, 0);
@@ -231,7 +224,7 @@ impl System {
         match &mut work.mass {
             MassFactor::Composite(mass) => mass.outward(&mut work.solutions),
             MassFactor::Articulated(mass) => {
-                let first_unit = 1 + self.equations;
+                let first_unit = self.first_unit();
                 for column in (0..1).chain(first_unit..first_unit + self.reaction_loads.len()) {
                     mass.outward(self.tree.nodes(), work.positions.nodes(), &mut work.solutions, column);
                 }

@@ -10,6 +10,7 @@ mod evaluate;
 mod inertia;
 mod internals;
 pub mod lagrange;
+mod lanes;
 mod linear;
 mod load;
 mod project;

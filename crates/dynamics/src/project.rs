@@ -140,9 +140,9 @@ impl System {
         work.constraint.solve();
         work.solutions.clear();
         let inverse = work.mass.inverse_diagonal();
-        for (i, (row, inverse)) in work.columns.rows().zip(inverse).enumerate() {
-            let w = row[1..=m].iter();
-            let sum: f64 = w.zip(&work.constraint.lambda).map(|(w, l)| w * l).sum();
+        for (i, inverse) in inverse.iter().enumerate() {
+            let lambda = work.constraint.lambda[..m].iter().enumerate();
+            let sum: f64 = lambda.map(|(k, l)| work.columns.at(i, 1 + k) * l).sum();
             *work.solutions.at_mut(i, 0) = -sum * inverse;
         }
         self.outward(work);

@@ -43,7 +43,7 @@ pub(crate) struct ReactionLoop {
     base: Vec<Reaction>,
     /// Change of reaction `j` for unit force `k`, at `j * loads + k`.
     influence: Vec<Reaction>,
-    /// Multipliers for unit force `k`, at `k * equations + row`.
+    /// Multipliers for the unit force at hand.
     multipliers: Vec<f64>,
     jacobian: Lu,
     step: Vec<f64>,
@@ -70,19 +70,12 @@ impl ReactionLoop {
             gains: vec![0.0; loads],
             base: vec![Wrench::zero(); loads],
             influence: vec![Wrench::zero(); loads * loads],
-            multipliers: vec![0.0; loads * system.equations],
+            multipliers: vec![0.0; system.equations],
             jacobian: Lu::new(loads),
             step: vec![0.0; loads],
             residual: 0.0,
             measure: 1.0,
         }
-    }
-
-    /// Keeps the multipliers for a unit force of load `k`.
-    #[inline]
-    pub fn set_unit_multipliers(&mut self, k: usize, multipliers: &[f64]) {
-        let m = multipliers.len();
-        self.multipliers[k * m..(k + 1) * m].copy_from_slice(multipliers);
     }
 
     pub fn forces(&self) -> &[f64] {
@@ -285,7 +278,6 @@ impl System {
     /// Reactions without the loads, and their changes for a unit force of each load.
     fn influences(&self, work: &mut Workspace) {
         let n = self.reaction_loads.len();
-        let m = self.equations;
         self.reactions(work);
         let nodes = self.tree.nodes();
         for (j, load) in self.reaction_loads.iter().enumerate() {
@@ -295,14 +287,17 @@ impl System {
         work.counters.reaction_sweeps += n as u64;
         for k in 0..n {
             let state = &mut work.reaction_loop;
+            for (row, multiplier) in state.multipliers.iter_mut().enumerate() {
+                *multiplier = work.constraint.all().at(row, self.first_unit() + k);
+            }
             let positions = work.positions.nodes();
             for (i, node) in nodes.iter().enumerate().skip(1) {
-                let rate = |speed: usize| work.solutions.at(speed, 1 + m + k);
+                let rate = |speed: usize| work.solutions.at(speed, self.first_unit() + k);
                 let twist = acceleration_step(node, &positions[i], &work.twists[node.parent], rate);
                 work.twists[i] = twist;
                 work.wrenches[i] = inertial_wrench(&work.inertias[i], &twist);
             }
-            let mut first = k * m;
+            let mut first = 0;
             for closure in &self.closures {
                 let lambda = &state.multipliers[first..first + closure.equations()];
                 let (on_predecessor, on_successor) = closure.wrenches(&work.positions, lambda);
@@ -324,24 +319,13 @@ impl System {
 
     /// Adds what the loads found do to rates, multipliers and power.
     fn add_reaction_loads(&self, v: &[f64], work: &mut Workspace) {
-        let m = self.equations;
+        let first_unit = self.first_unit();
         let state = &mut work.reaction_loop;
         state.forces.copy_from_slice(&state.trial);
-        for (rate, row) in work.rates.iter_mut().zip(work.solutions.rows()) {
-            *rate += row[1 + m..]
-                .iter()
-                .zip(&state.forces)
-                .map(|(unit, force)| unit * force)
-                .sum::<f64>();
-        }
+        work.constraint.add_loads(first_unit, &state.forces);
         for (k, (force, load)) in state.forces.iter().zip(&self.reaction_loads).enumerate() {
-            for (lambda, unit) in work
-                .constraint
-                .lambda
-                .iter_mut()
-                .zip(&state.multipliers[k * m..(k + 1) * m])
-            {
-                *lambda += unit * force;
+            for (speed, rate) in work.rates.iter_mut().enumerate() {
+                *rate += work.solutions.at(speed, first_unit + k) * force;
             }
             work.power += force * v[load.speed];
         }

@@ -266,6 +266,12 @@ impl System {
         &self.inertias
     }
 
+    /// The column of the first unit reaction load among all right-hand sides, behind those of generalised forces and closures:
+    /// a multiple of four.
+    pub(crate) fn first_unit(&self) -> usize {
+        (1 + self.equations).next_multiple_of(4)
+    }
+
     /// Gravity \[m/s^2\].
     pub fn gravity(&self) -> Vector3<f64> {
         self.gravity

@@ -93,7 +93,7 @@ impl Workspace {
         } else {
             MassFactor::Articulated(Articulated::new(tree))
         };
-        let columns = 1 + system.equations + system.reaction_loads.len();
+        let columns = system.first_unit() + system.reaction_loads.len();
         Self {
             positions: Positions::new(tree),
             velocities: Velocities::new(tree),
@@ -107,7 +107,7 @@ impl Workspace {
             generalised: vec![0.0; tree.speeds()],
             state_rates: vec![0.0; system.internals.states],
             integral_rates: vec![0.0; system.internals.integrals],
-            constraint: Multipliers::new(system.equations),
+            constraint: Multipliers::new(system.equations, columns),
             reaction_loop: ReactionLoop::new(system),
             rates: vec![0.0; tree.speeds()],
             reactions: vec![Wrench::zero(); nodes],
