@@ -6,7 +6,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Library crates of the workspace, by folder.
-const LIBRARIES: [&str; 5] = ["kinematics", "dynamics", "friction", "integrators", "mechanisms"];
+const LIBRARIES: [&str; 6] = [
+    "kinematics",
+    "dynamics",
+    "friction",
+    "integrators",
+    "rfem",
+    "mechanisms",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap()
@@ -306,6 +313,7 @@ fn dynamics_know_no_material_and_no_law_of_friction() {
 #[test]
 fn laws_have_no_memory() {
     let mut paths = sources("crates/friction/src");
+    paths.extend(sources("crates/rfem/src"));
     paths.extend(["drive.rs", "joint_friction.rs"].map(|name| format!("crates/mechanisms/src/{name}")));
     for path in paths {
         let text = code(&read(&path));
