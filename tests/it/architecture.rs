@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Library crates of the workspace, by folder.
-const LIBRARIES: [&str; 6] = [
+const LIBRARIES: [&str; 7] = [
     "kinematics",
     "dynamics",
+    "contact",
     "friction",
     "integrators",
     "rfem",
@@ -313,6 +314,7 @@ fn dynamics_know_no_material_and_no_law_of_friction() {
 #[test]
 fn laws_have_no_memory() {
     let mut paths = sources("crates/friction/src");
+    paths.extend(sources("crates/contact/src"));
     paths.extend(sources("crates/rfem/src"));
     paths.extend(["drive.rs", "joint_friction.rs"].map(|name| format!("crates/mechanisms/src/{name}")));
     for path in paths {
