@@ -41,8 +41,8 @@ static double TOL = 1e-16, HMAX = 0.01, END = 5, EVERY = 0.5;
 static int NB, SLI, YOK, LAST, NY, NC; /* bodies: 0 crank, 1..LAST coupler, SLI, YOK; NB is the ground; contacts */
 static real mass[MAXB], inert[MAXB][3], CBEND, CTOR;
 
-/* modes and impact speeds of the contacts: discrete state, changed at events only */
-static int mode[2];
+/* discrete state of the contacts, changed at events only: touching, sign of the sliding speed, force clamped at zero */
+static int mode[2], sg[2] = {1, 1}, clamped[2];
 static real vimp[2];
 static long evals;
 
@@ -235,7 +235,7 @@ static void solve(real *x) {
 /* -------------------------------------------------------------------------------------------------------------- contact */
 typedef struct {
     real dist, rate, n[3], t[3], a[3], vt, va;      /* |e|, its rate, directions, sliding speeds (along t, along a) */
-    real fn, mut, mua, zt, za, fb[3], pb[3], pj[3]; /* normal force, coefficients, bristle rates, force on the bearing, points */
+    real damp, fn, mut, mua, zt, za, fb[3], pb[3], pj[3]; /* normal force, coefficients, bristle rates, force on the bearing, points */
 } touch;
 
 static void contact(kin *K, const real *x, int k, touch *C) {
@@ -285,10 +285,10 @@ static void contact(kin *K, const real *x, int k, touch *C) {
     memset(C->fb, 0, sizeof C->fb);
     if (!mode[k]) return;
     real d = C->dist - CLR;
-    if (d > 0) C->fn = KC / NC * d * sqrt(d) * (1 + 3 * (1 - REST * REST) / 4 * C->rate / vimp[k]);
-    if (C->fn < 0) C->fn = 0;
+    C->damp = 1 + 3 * (1 - REST * REST) / 4 * C->rate / vimp[k];
+    if (d > 0 && !clamped[k]) C->fn = KC / NC * d * sqrt(d) * C->damp;
     if (FRIC) {
-        real v = CL == 2 ? sqrt(C->vt * C->vt + C->va * C->va) : fabs(C->vt);
+        real v = CL == 2 ? sqrt(C->vt * C->vt + C->va * C->va) : sg[k] * C->vt; /* |.| by its branch */
         real g = MUK + (MUS - MUK) * exp(-(v / VS) * (v / VS)), zt = x[Z0 + 2 * k], za = x[Z0 + 2 * k + 1];
         C->zt = C->vt - S0 * v * zt / g, C->za = C->va - S0 * v * za / g;
         C->mut = S0 * zt + S1 * C->zt, C->mua = S0 * za + S1 * C->za;
@@ -438,6 +438,21 @@ static real project(real *y, int sweeps) {
 /* --------------------------------------------------------------------------------------------------------- integrators */
 static real F0[MAXY]; /* right-hand side at the start of the step */
 
+/* Depth^1.5 has no second derivative where contact begins or ends. There the step is done in sigma instead of t:
+ * kind 1: t = t0 + sigma^2; kind 2: t = t0 + h - (sqrt(h) - sigma)^2; the motion is smooth in sigma. */
+static int KIND;
+static real TA, HS;
+static void rate(real s, const real *y, real *f, kin *K) {
+    if (!KIND) {
+        rhs(TA + s, y, f, K);
+        return;
+    }
+    real r = HS - s, c = 2 * (KIND == 1 ? s : r);
+    if (r < 0) r = 0;
+    rhs(TA + (KIND == 1 ? s * s : HS * HS - r * r), y, f, K);
+    for (int i = 0; i < NY; i++) f[i] *= c;
+}
+
 static real weighted(const real *e, const real *y) {
     real w = 0;
     for (int i = 0; i < NY; i++) {
@@ -447,16 +462,16 @@ static real weighted(const real *e, const real *y) {
     return w;
 }
 
-static real step_extrapolation(real t, const real *y, real h, real *out) {
+static real step_extrapolation(const real *y, real h, const real *f0, real *out) {
     static real T[20][MAXY], u[MAXY], v[MAXY], w[MAXY], f[MAXY], e[MAXY];
     kin K;
     for (int j = 0; j < KCOL; j++) {
         int n = 2 * (j + 1);
         real s = h / n;
         memcpy(u, y, NY * sizeof(real));
-        for (int i = 0; i < NY; i++) v[i] = y[i] + s * F0[i];
+        for (int i = 0; i < NY; i++) v[i] = y[i] + s * f0[i];
         for (int m = 1; m < n; m++) {
-            rhs(t + m * s, v, f, &K);
+            rate(m * s, v, f, &K);
             for (int i = 0; i < NY; i++) w[i] = u[i] + 2 * s * f[i], u[i] = v[i], v[i] = w[i];
         }
         /* Aitken-Neville in 1/n^2, in place: T[l] is the entry of column j - l */
@@ -491,10 +506,10 @@ static const real FA[13][12] = {
     {-1777.0L / 4100, 0, 0, -341.0L / 164, 4496.0L / 1025, -289.0L / 82, 2193.0L / 4100, 51.0L / 82, 33.0L / 164, 12.0L / 41, 0, 1}};
 static const real FB[13] = {0, 0, 0, 0, 0, 34.0L / 105, 9.0L / 35, 9.0L / 35, 9.0L / 280, 9.0L / 280, 0, 41.0L / 840, 41.0L / 840};
 
-static real step_fehlberg(real t, const real *y, real h, real *out) {
+static real step_fehlberg(const real *y, real h, const real *f0, real *out) {
     static real k[13][MAXY], u[MAXY];
     kin K;
-    memcpy(k[0], F0, NY * sizeof(real));
+    memcpy(k[0], f0, NY * sizeof(real));
     for (int s = 1; s < 13; s++) {
         for (int i = 0; i < NY; i++) {
             real a = 0;
@@ -502,7 +517,7 @@ static real step_fehlberg(real t, const real *y, real h, real *out) {
                 if (FA[s][j] != 0) a += FA[s][j] * k[j][i];
             u[i] = y[i] + h * a;
         }
-        rhs(t + FC[s] * h, u, k[s], &K);
+        rate(FC[s] * h, u, k[s], &K);
     }
     for (int i = 0; i < NY; i++) {
         real a = 0;
@@ -512,8 +527,11 @@ static real step_fehlberg(real t, const real *y, real h, real *out) {
     }
     return weighted(u, out);
 }
-static real step(real t, const real *y, real h, real *out) {
-    return METHOD ? step_fehlberg(t, y, h, out) : step_extrapolation(t, y, h, out);
+static real step(real t, const real *y, real h, int kind, real *out) {
+    static real f0[MAXY];
+    KIND = kind, TA = t, HS = kind ? sqrt(h) : h;
+    for (int i = 0; i < NY; i++) f0[i] = kind == 0 ? F0[i] : kind == 1 ? 0 : 2 * HS * F0[i];
+    return METHOD ? step_fehlberg(y, HS, f0, out) : step_extrapolation(y, HS, f0, out);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- results */
@@ -544,12 +562,10 @@ static void header(void) {
         for (int b = 1; b < LAST; b++) fprintf(FS, ",%c.psi12.%d,%c.theta12.%d,%c.phi12.%d", "qv"[s], b, "qv"[s], b, "qv"[s], b);
     }
     fprintf(FS, ",a.psi11,a.z21,R.fx,R.fy,R.fz,R.nx,R.ny,R.nz");
-    for (int k = 0; k < NC; k++) {
-        fprintf(FS, ",contact.R%.*s.depth", NC - 1, k ? "2" : "1");
-        for (int j = 0; j < 7; j++)
-            if (NC == 2 || (j != 3 && j != 5))
-                fprintf(FS, ",%s", (const char *[]){"rate", "normal", "tangent", "tangent_axial", "bristle", "bristle_axial", "impact_speed"}[j]);
-    }
+    const char *part[8] = {"depth", "rate", "normal", "tangent", "tangent_axial", "bristle", "bristle_axial", "impact_speed"};
+    for (int k = 0; k < NC; k++)
+        for (int j = 0; j < 8; j++)
+            if (NC == 2 || (j != 4 && j != 6)) fprintf(FS, ",contact.R%s.%s", NC == 1 ? "" : k ? "2" : "1", part[j]);
     fprintf(FS, ",energy.kinetic,energy.potential,work.drive");
     if (NS) fprintf(FS, ",energy.elastic,work.damping");
     if (NC) fprintf(FS, ",energy.contact,work.contact,impulse.normal");
@@ -686,31 +702,40 @@ static void start(real *y) {
 }
 
 /* ------------------------------------------------------------------------------------------------------------- the run */
-static void gaps(const real *y, real *g, real *dg) {
+/* what is watched, 3 of each contact: gap closed (sign by mode), sliding speed (sign by sg), damping factor (sign by clamped);
+ * each is positive while the discrete state holds, 1 where it does not apply */
+static void watch(const real *y, real *g) {
     kin K;
     kinematics(y, &K);
     for (int k = 0; k < NC; k++) {
         touch C;
         contact(&K, y + 13 * NB, k, &C);
-        g[k] = C.dist - CLR, dg[k] = C.rate;
+        g[3 * k] = mode[k] ? C.dist - CLR : CLR - C.dist;
+        g[3 * k + 1] = mode[k] && FRIC && CL == 1 ? sg[k] * C.vt : 1;
+        g[3 * k + 2] = mode[k] ? (clamped[k] ? -C.damp : C.damp) : 1;
     }
 }
-static real advance(real t, const real *y, real h, real *out) {
-    real e = step(t, y, h, out);
+static void watch_rates(const real *y, const real *f, const real *g, real *dg) {
+    static real u[MAXY];
+    const real eps = 1e-8L;
+    for (int i = 0; i < NY; i++) u[i] = y[i] + eps * f[i];
+    watch(u, dg);
+    for (int k = 0; k < 3 * NC; k++) dg[k] = (dg[k] - g[k]) / eps;
+}
+static real advance(real t, const real *y, real h, int kind, real *out) {
+    real e = step(t, y, h, kind, out);
     project(out, 1);
     return e;
 }
-/* could the cubic through values and rates pass the level 0 within the step although both ends do not? */
+/* could the cubic through values and rates dip towards 0 within the step although both ends are positive? */
 static int suspicious(real g0, real d0, real g1, real d1, real h) {
-    real s = g0 + g1 > 0 ? 1 : -1;
-    if (s * d0 >= 0 || s * d1 <= 0) return 0;
-    real least = s * g0;
-    for (int i = 1; i < 16; i++) {
-        real u = i / 16.0L, v = 1 - u;
+    if (d0 >= 0 || d1 <= 0) return 0;
+    for (int i = 1; i < 32; i++) {
+        real u = i / 32.0L, v = 1 - u;
         real c = v * v * (1 + 2 * u) * g0 + u * u * (1 + 2 * v) * g1 + h * u * v * (v * d0 - u * d1);
-        if (s * c < least) least = s * c;
+        if (c < (g0 < g1 ? g0 : g1) / 8) return 1;
     }
-    return least < (fabs(g0) < fabs(g1) ? fabs(g0) : fabs(g1)) / 2;
+    return 0;
 }
 
 int main(int argc, char **argv) {
@@ -734,15 +759,19 @@ int main(int argc, char **argv) {
         for (nt = 0; nt * EVERY <= END * (1 + 1e-12); nt++) times[nt] = nt * EVERY;
     char name[400];
     snprintf(name, sizeof name, "%s_states.csv", prefix), FS = fopen(name, "w");
-    snprintf(name, sizeof name, "%s_events.csv", prefix), FE = fopen(name, "w");
-    if (!FS || !FE) return 1;
-    static real y[MAXY], y1[MAXY], y2[MAXY];
-    real t = 0, h = 1e-6L, g0[2], d0[2], g1[2], d1[2], worst = 0, shared = 0, made[2] = {0};
-    long steps = 0, rejected = 0, events = 0, makes = 0, halved = 0;
+    if (!FS) return 1;
+    static real y[MAXY], y1[MAXY], y2[MAXY], f1[MAXY];
+    real t = 0, h = 1e-6L, g0[6], d0[6], g1[6], d1[6], worst = 0, shared = 0, made[2] = {0};
+    long steps = 0, rejected = 0, makes = 0, halved = 0, reversals = 0, clamps = 0;
+    int fresh = 0; /* contact has just begun */
     start(y);
+    if (NC) {
+        snprintf(name, sizeof name, "%s_events.csv", prefix), FE = fopen(name, "w");
+        if (!FE) return 1;
+        fprintf(FE, "t,kind,name,speed\n");
+    }
     real moved = project(y, 2);
     header();
-    fprintf(FE, "t,kind,name,speed\n");
     while (it < nt && times[it] <= 0) output(0, y), it++;
     kin K;
     real q_[6], v_[6];
@@ -750,64 +779,81 @@ int main(int argc, char **argv) {
         real stop = END;
         if (it < nt && times[it] < stop) stop = times[it];
         if (t < 2 && stop > 2) stop = 2;
-        int hits = 0;
+        int hits = 0, fired = -1;
+        if (h > (real)HMAX) h = HMAX;
         real want = h;
-        if (h > (real)HMAX) h = HMAX, want = h;
         if (t + h * 1.0001L >= stop) h = stop - t, hits = 1;
         rhs(t, y, F0, &K);
-        gaps(y, g0, d0);
-        real err = advance(t, y, h, y1) / (real)TOL, order = METHOD ? 8 : 2 * KCOL - 1;
-        real scale = err > 0 ? 0.85L * pow(err, -1 / order) : 4;
-        if (!(err <= 1)) {
-            h *= !(scale >= 0.1L) ? 0.1L : scale, rejected++;
-            if (h < 1e-17L) return fprintf(stderr, "step too short at %.12Lg, err %.3Lg\n", (long double)t, (long double)err), 1;
+        watch(y, g0), watch_rates(y, F0, g0, d0);
+        real err = advance(t, y, h, fresh ? 1 : 0, y1);
+        if (!(err < 1e-3L)) { /* far too long */
+            h /= 10, rejected++;
             continue;
         }
-        gaps(y1, g1, d1);
-        int redo = 0, fired = -1;
-        for (int k = 0; k < NC; k++)
-            if ((mode[k] ? g1[k] >= 0 : g1[k] <= 0) && h > 1e-12L && suspicious(g0[k], d0[k], g1[k], d1[k], h)) redo = 1;
-        if (redo) {
-            h /= 2, halved++;
-            continue;
-        }
-        for (int tries = 0; tries < 2; tries++)
-            for (int k = 0; k < NC; k++) {
-                if (mode[k] ? g1[k] >= 0 : g1[k] <= 0) continue;
-                /* the earliest zero of gap k: secant with bracket, repeating the step */
-                real a = 0, b = h, fa = g0[k], fb = g1[k], c = h;
-                if (fa * fb > 0) fa = mode[k] ? 1e-30L : -1e-30L;
-                memcpy(y2, y1, sizeof y1);
-                for (int i = 0; i < 100; i++) {
-                    c = c - g1[k] / d1[k];
-                    if (!(c > a && c < b)) c = b - fb * (b - a) / (fb - fa);
-                    if (i > 8 || !(c > a && c < b)) c = (a + b) / 2;
-                    advance(t, y, c, y2), gaps(y2, g1, d1);
-                    if ((g1[k] < 0) == (fa < 0)) a = c, fa = g1[k];
-                    else b = c, fb = g1[k];
-                    if (fabs(g1[k] / d1[k]) < 1e-19L || b - a < 1e-19L) break;
+        watch(y1, g1);
+        for (int pass = 0; pass < 3; pass++)
+            for (int k = 0; k < 3 * NC; k++) {
+                if (g1[k] >= 0) continue;
+                /* the earliest zero of function k: false position with halving, repeating the step */
+                int kind = k % 3 == 0 && mode[k / 3] ? 2 : fresh ? 1 : 0;
+                real a = 0, b = h, fa = g0[k] > 0 ? g0[k] : 0, fb = g1[k], c = h;
+                for (int i = 0; i < 120; i++) {
+                    c = i == 0 || i % 12 == 11 || fa == 0 ? (a + b) / 2 : (a * fb - b * fa) / (fb - fa);
+                    if (!(c > a && c < b)) c = (a + b) / 2;
+                    err = advance(t, y, c, kind, y2), watch(y2, g1);
+                    if (g1[k] > 0) {
+                        if (fa == g1[k]) break;
+                        a = c, fa = g1[k], fb /= i > 1 ? 2 : 1;
+                    } else {
+                        b = c, fb = g1[k], fa /= i > 1 ? 2 : 1;
+                    }
+                    if (b - a < 1e-19L || fabs(g1[k]) < (k % 3 ? 1e-19L : 3e-20L)) break;
                 }
+                g1[k] = 0;
                 memcpy(y1, y2, sizeof y1);
                 h = c, hits = 0, fired = k;
             }
-        t = hits ? stop : t + h;
-        memcpy(y, y1, sizeof y), steps++;
-        kinematics(y, &K);
-        coordinates(&K, q_, v_);
-        {
-            equations(&K);
-            for (int i = 0; i < M; i++) worst = fabs(ROW[i].phi) > worst ? fabs(ROW[i].phi) : worst;
+        err /= (real)TOL;
+        real order = METHOD ? 8 : 2 * KCOL - 1, scale = err > 0 ? 0.85L * pow(err, -1 / order) : 4;
+        if (!(err <= 1)) {
+            h *= scale < 0.1L ? 0.1L : scale, rejected++;
+            if (h < 1e-16L) return fprintf(stderr, "step too short at %.12Lg, err %.3Lg\n", (long double)t, (long double)err), 1;
+            continue;
         }
-        if (fired >= 0) {
-            int k = fired;
-            events++;
-            if (mode[k] == 0) mode[k] = 1, vimp[k] = d1[k] > 1e-6L ? d1[k] : 1e-6L, made[k] = t, makes++;
-            else {
-                mode[k] = 0, shared += t - made[k];
-                y[13 * NB + Z0 + 2 * k] = y[13 * NB + Z0 + 2 * k + 1] = 0;
+        if (NC) {
+            int redo = 0;
+            rhs(t + h, y1, f1, &K);
+            watch_rates(y1, f1, g1, d1);
+            for (int k = 0; k < 3 * NC; k++) redo |= h > 1e-9L && k != fired && suspicious(g0[k], d0[k], g1[k], d1[k], h);
+            if (redo) {
+                h /= 2, halved++;
+                continue;
             }
-            fprintf(FE, "%.17Lg,%s,R%s,%.17Lg\n", (long double)t, mode[k] ? "made" : "lost", NC == 1 ? "" : k ? "2" : "1", (long double)d1[k]);
-            h = want < 1e-7L ? want : 1e-7L;
+        }
+        t = hits ? stop : t + h;
+        memcpy(y, y1, sizeof y), steps++, fresh = 0;
+        kinematics(y, &K), coordinates(&K, q_, v_), equations(&K);
+        for (int i = 0; i < M; i++) worst = fabs(ROW[i].phi) > worst ? fabs(ROW[i].phi) : worst;
+        if (fired >= 0) {
+            int k = fired / 3;
+            touch C;
+            contact(&K, y + 13 * NB, k, &C);
+            h = want;
+            if (fired % 3 == 1) sg[k] = -sg[k], reversals++;
+            if (fired % 3 == 2) clamped[k] = !clamped[k], clamps++;
+            if (fired % 3 == 0) {
+                if (mode[k] == 0) {
+                    mode[k] = 1, vimp[k] = C.rate > 1e-6L ? C.rate : 1e-6L, made[k] = t, makes++;
+                    sg[k] = C.vt < 0 ? -1 : 1, clamped[k] = 0, fresh = 1;
+                    h = want < 1e-5L ? want : 1e-5L;
+                } else {
+                    mode[k] = 0, shared += t - made[k];
+                    y[13 * NB + Z0 + 2 * k] = y[13 * NB + Z0 + 2 * k + 1] = 0;
+                }
+                fprintf(FE, "%.17Lg,%s,R%s,%.17Lg\n", (long double)t, mode[k] ? "made" : "lost", NC == 1 ? "" : k ? "2" : "1",
+                        (long double)C.rate);
+                fflush(FE);
+            }
         } else
             h = hits ? (want > h ? want : h) : h * (scale > 4 ? 4 : scale < 0.2L ? 0.2L : scale);
         if (hits)
@@ -815,7 +861,8 @@ int main(int argc, char **argv) {
     }
     for (int k = 0; k < NC; k++)
         if (mode[k]) shared += t - made[k];
-    printf("steps %ld rejected %ld halved %ld evaluations %ld events %ld impacts %ld share %.12Lf start moved %.1Le worst residual %.1Le\n", steps,
-           rejected, halved, evals, events, makes, (long double)(shared / END), (long double)moved, (long double)worst);
+    printf("steps %ld rejected %ld halved %ld evaluations %ld; impacts %ld share in contact %.12Lf sliding reversals %ld clamp switches %ld; "
+           "start moved %.1Le, worst residual %.1Le\n",
+           steps, rejected, halved, evals, makes, (long double)(shared / END), reversals, clamps, (long double)moved, (long double)worst);
     return 0;
 }
