@@ -30,6 +30,7 @@ impl Section {
     /// # Errors
     /// A diameter that is not positive, or with a section beyond the range of `f64`.
     pub fn circle(diameter: f64) -> Result<Self, BeamError> {
+        Expected::Positive.check("diameter", diameter)?;
         Self::tube(diameter, 0.0)
     }
 

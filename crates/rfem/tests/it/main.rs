@@ -3,6 +3,7 @@
 mod benchmark_17_beam_modes;
 mod benchmark_18_elastica;
 mod bodies;
+mod buckling;
 mod continuum;
 mod fixtures;
 mod planar;

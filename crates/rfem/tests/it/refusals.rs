@@ -92,7 +92,7 @@ fn lengths_and_sides() {
     refuses("length", &NOT_POSITIVE, |l| {
         divide(l, &OWN, &STEEL, Division::Standard(3))
     });
-    refuses("outer_diameter", &NOT_POSITIVE, Section::circle);
+    refuses("diameter", &NOT_POSITIVE, Section::circle);
     refuses("outer_diameter", &NOT_POSITIVE, |d| Section::tube(d, 0.01));
     refuses("inner_diameter", &[-0.01, 0.02, 0.03], |d| Section::tube(0.02, d));
     refuses("width", &NOT_POSITIVE, |b| Section::rectangle(b, 0.01));
