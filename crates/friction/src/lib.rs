@@ -6,7 +6,9 @@ mod characteristic;
 mod parameter;
 
 pub use bearing::{Bearing, BearingModel, Capacity, JournalBearing, PadGuide, Surface};
-pub use bristle::{Bristle, BristleModel, BristlePoint, ElastoPlastic, Guard, LuGre, Partials};
+pub use bristle::{
+    Bristle, BristleModel, BristlePoint, BristleStart, ElastoPlastic, Guard, LuGre, Partials, PlanarBristlePoint,
+};
 pub use characteristic::{
     Characteristic, Cubic, Exponential, Friction, HyperbolicTangent, PiecewiseLinear, Stribeck, Sum, Value, Viscous,
 };

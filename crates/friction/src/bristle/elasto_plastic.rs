@@ -1,3 +1,4 @@
+use super::planar::{PlanarBristlePoint, polar};
 use super::{BristleModel, BristlePoint, LuGre};
 use crate::{Expected, ParameterError};
 use std::f64::consts::PI;
@@ -50,6 +51,19 @@ impl BristleModel for ElastoPlastic {
                 if slip * s <= 0.0 { (0.0, 0.0) } else { self.flow(s) }
             },
         )
+    }
+
+    /// ż = v - α(|s|) max(0, v·s/|s|) s with s = σ₀ z/g(|v|): the bristle flows by the part of the slip along its
+    /// deflection, so that ż stays continuous where the slip turns away from it. On a line the same as
+    /// [`at`](Self::at); |z| ≤ µ_s/σ₀ is never left, and it is passive where its LuGre is.
+    #[inline]
+    fn at_planar(&self, slip: [f64; 2], bristle: [f64; 2]) -> PlanarBristlePoint {
+        self.lugre.evaluate_planar(slip, bristle, |_, share| {
+            let (x, lean) = polar(share);
+            let along = slip[0] * lean[0] + slip[1] * lean[1];
+            let (flowing, _) = self.flow(x);
+            lean.map(|u| along.max(0.0) * (flowing * u))
+        })
     }
 
     fn steady_bristle(&self, slip: f64) -> f64 {

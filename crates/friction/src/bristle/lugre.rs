@@ -1,3 +1,4 @@
+use super::planar::{PlanarBristlePoint, polar};
 use super::{BristleModel, BristlePoint, Partials};
 use crate::{Expected, ParameterError};
 
@@ -117,6 +118,46 @@ impl LuGre {
         z + ((g / sigma0).copysign(v) - z) * -(-x).exp_m1()
     }
 
+    /// [`step`](Self::step) in the plane of contact: the deflection runs straight to the steady one.
+    pub fn step_planar(&self, slip: [f64; 2], bristle: [f64; 2], duration: f64) -> [f64; 2] {
+        let (v, z, h) = (slip, bristle, duration);
+        let (speed, direction) = polar(v);
+        let sigma0 = self.bristle_stiffness;
+        if speed * h == 0.0 || sigma0 == 0.0 {
+            return [0, 1].map(|i| z[i] + v[i] * h);
+        }
+        let (g, _) = self.steady_curve(speed);
+        let settled = -(-sigma0 * (speed * h).abs() / g).exp_m1();
+        [0, 1].map(|i| z[i] + (g / sigma0 * direction[i] - z[i]) * settled)
+    }
+
+    /// Coefficient and rate for ż = v - flow, where `flow` is a function of the speed and of the vector s = σ₀ z/g.
+    /// LuGre has |v| s.
+    #[inline]
+    pub(super) fn evaluate_planar(
+        &self,
+        v: [f64; 2],
+        z: [f64; 2],
+        flow: impl Fn(f64, [f64; 2]) -> [f64; 2],
+    ) -> PlanarBristlePoint {
+        let sigma0 = self.bristle_stiffness;
+        let (speed, direction) = polar(v);
+        let curve = self.steady_curve(speed);
+        // Without friction a bristle carries nothing and flows at once.
+        let share = if curve.0 > 0.0 {
+            z.map(|z| sigma0 * z / curve.0)
+        } else {
+            direction
+        };
+        let flow = flow(speed, share);
+        let (sigma1, _) = self.guarded_damping(speed, curve);
+        let rate = [v[0] - flow[0], v[1] - flow[1]];
+        PlanarBristlePoint {
+            coefficient: [0, 1].map(|i| sigma0 * z[i] + sigma1 * rate[i] + self.viscous_coefficient * v[i]),
+            rate,
+        }
+    }
+
     /// Coefficient and rate for ż = v - |v| S(s), where s = σ₀ z/g is the load on the bristle as a
     /// share of the steady one, and `flow` gives S and dS/ds. LuGre has S = s.
     #[inline]
@@ -152,6 +193,13 @@ impl BristleModel for LuGre {
     #[inline]
     fn at(&self, slip: f64, bristle: f64) -> BristlePoint {
         self.evaluate(slip, bristle, |s| (s, 1.0))
+    }
+
+    /// ż = v - σ₀ |v| z/g(|v|) by components, µ = σ₀ z + σ₁ ż + σ₂ v. |z| ≤ µ_s/σ₀ is never left, and the model is
+    /// passive where the one-dimensional one is.
+    #[inline]
+    fn at_planar(&self, slip: [f64; 2], bristle: [f64; 2]) -> PlanarBristlePoint {
+        self.evaluate_planar(slip, bristle, |speed, share| share.map(|s| speed * s))
     }
 
     /// z_ss = g(v) sgn(v)/σ₀; infinite for σ₀ = 0, where the bristle never settles.

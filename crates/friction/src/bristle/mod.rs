@@ -2,9 +2,11 @@
 
 mod elasto_plastic;
 mod lugre;
+mod planar;
 
 pub use elasto_plastic::ElastoPlastic;
 pub use lugre::{Guard, LuGre};
+pub use planar::{BristleStart, PlanarBristlePoint};
 
 use crate::ParameterError;
 use std::fmt::Debug;
@@ -53,6 +55,45 @@ pub trait BristleModel: Debug + Send + Sync {
     fn steady_coefficient(&self, slip: f64) -> f64 {
         let z = self.steady_bristle(slip);
         self.at(slip, z).coefficient.value
+    }
+
+    /// Coefficient and bristle rate for a slip \[m/s\] and a deflection \[m\] in the plane of contact, by components
+    /// along two directions that are carried along with the contact. On a line the same as [`at`](Self::at).
+    ///
+    /// By default the one-dimensional model at the slip's speed, with what the deflection across the slip changes
+    /// added across.
+    fn at_planar(&self, slip: [f64; 2], bristle: [f64; 2]) -> PlanarBristlePoint {
+        planar::superposed(self, slip, bristle)
+    }
+
+    /// The slip speed \[m/s\] up to which the model is passive; infinite where it is at all speeds.
+    ///
+    /// By default found by trying [`is_passive_at`](Self::is_passive_at) from 1e-12 to 1e12 m/s in steps of a
+    /// hundredth, then by bisection to rounding. For diagnoses, not for inner loops.
+    fn largest_passive_slip(&self) -> f64 {
+        let mut passive = 0.0;
+        let mut speed = 1e-12;
+        while self.is_passive_at(speed) {
+            passive = speed;
+            speed *= 1.01;
+            if speed > 1e12 {
+                return f64::INFINITY;
+            }
+        }
+        if passive == 0.0 {
+            return 0.0;
+        }
+        loop {
+            let middle = 0.5 * (passive + speed);
+            if !(passive < middle && middle < speed) {
+                return passive;
+            }
+            if self.is_passive_at(middle) {
+                passive = middle;
+            } else {
+                speed = middle;
+            }
+        }
     }
 
     /// Refuses parameters for which [`at`](Self::at) has no meaning.
@@ -108,6 +149,15 @@ impl BristleModel for Bristle {
 
     fn steady_coefficient(&self, slip: f64) -> f64 {
         self.model().steady_coefficient(slip)
+    }
+
+    #[inline]
+    fn at_planar(&self, slip: [f64; 2], bristle: [f64; 2]) -> PlanarBristlePoint {
+        self.model().at_planar(slip, bristle)
+    }
+
+    fn largest_passive_slip(&self) -> f64 {
+        self.model().largest_passive_slip()
     }
 
     fn validate(&self) -> Result<(), ParameterError> {

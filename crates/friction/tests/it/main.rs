@@ -7,6 +7,8 @@ mod elasto_plastic;
 mod extremes;
 mod fixtures;
 mod lugre;
+mod passive_slip;
+mod planar;
 mod refusals;
 #[cfg(feature = "serde")]
 mod serialised;

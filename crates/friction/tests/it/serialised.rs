@@ -19,6 +19,7 @@ fn names_are_those_of_the_fields() {
         to_value(Guard::Decay { speed: 0.5 }).unwrap(),
         json!({ "decay": { "speed": 0.5 } })
     );
+    assert_eq!(to_value(BristleStart::Steady).unwrap(), json!("steady"));
 }
 
 #[test]
