@@ -5,7 +5,7 @@ mod bristle;
 mod characteristic;
 mod parameter;
 
-pub use bearing::{Bearing, BearingModel, Capacity, JournalBearing, PadGuide, Surface};
+pub use bearing::{Bearing, BearingModel, Capacity, JournalBearing, PadGuide, Supports, Surface};
 pub use bristle::{
     Bristle, BristleModel, BristlePoint, BristleStart, ElastoPlastic, Guard, LuGre, Partials, PlanarBristlePoint,
 };

@@ -1,4 +1,4 @@
-use super::{BearingModel, Capacity, supports};
+use super::{BearingModel, Capacity, Supports, supports};
 use crate::{Expected, ParameterError};
 
 /// A surface on which a bearing slides.
@@ -95,6 +95,16 @@ impl BearingModel for JournalBearing {
         capacity.value += w_c * f_c;
         capacity.d_force[2] = w_c * sign;
         capacity
+    }
+
+    fn supports(&self) -> Option<Supports> {
+        let [r_a, r_b, r_c] = self.levers();
+        let w_a = self.surface_a.coefficient * r_a;
+        let w_b = self.surface_b.coefficient * r_b;
+        Some(Supports {
+            across: [[0.5 * w_a, w_a / self.spacing], [0.5 * w_b, -w_b / self.spacing]],
+            along: [self.face.coefficient * r_c, 0.0],
+        })
     }
 
     fn validate(&self) -> Result<(), ParameterError> {

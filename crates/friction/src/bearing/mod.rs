@@ -25,6 +25,21 @@ pub struct Capacity {
     pub d_torque: [f64; 3],
 }
 
+/// Weights of a capacity that is a sum of three lengths: two supports across the axis z and one along it, all round about it.
+///
+/// ```text
+/// t_f = Σ_i |a_i (f_x, f_y) + b_i (-n_y, n_x)| + |c f_z + d n_z|     across[i] = [a_i, b_i], along = [c, d]
+/// ```
+///
+/// Solvers that look for friction and reactions together are faster where they know them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Supports {
+    /// a_i \[m or -\] and b_i \[- or 1/m\] of the supports across the axis.
+    pub across: [[f64; 2]; 2],
+    /// c \[m or -\] and d \[- or 1/m\] of the support along it.
+    pub along: [f64; 2],
+}
+
 /// A bearing whose friction depends on the force and torque it transmits.
 ///
 /// Force \[N\] and torque \[N m\] are those exerted on the successor at the joint origin, in the
@@ -34,6 +49,11 @@ pub struct Capacity {
 pub trait BearingModel: Debug + Send + Sync {
     /// Capacity and gradient under a joint force and torque.
     fn capacity(&self, force: [f64; 3], torque: [f64; 3]) -> Capacity;
+
+    /// The same capacity as weights of three lengths; `None` where it is not of that kind.
+    fn supports(&self) -> Option<Supports> {
+        None
+    }
 
     /// Refuses parameters for which [`capacity`](Self::capacity) has no meaning.
     fn validate(&self) -> Result<(), ParameterError> {
@@ -71,6 +91,10 @@ impl BearingModel for Bearing {
     #[inline]
     fn capacity(&self, force: [f64; 3], torque: [f64; 3]) -> Capacity {
         self.model().capacity(force, torque)
+    }
+
+    fn supports(&self) -> Option<Supports> {
+        self.model().supports()
     }
 
     fn validate(&self) -> Result<(), ParameterError> {

@@ -1,4 +1,4 @@
-use super::{BearingModel, Capacity, supports};
+use super::{BearingModel, Capacity, Supports, supports};
 use crate::{Expected, ParameterError};
 
 /// Guide of a prismatic joint: two pads A and B on the slide, and a key against turning.
@@ -63,6 +63,14 @@ impl BearingModel for PadGuide {
         capacity.value += w_k * n_k;
         capacity.d_torque[2] = w_k * sign;
         capacity
+    }
+
+    fn supports(&self) -> Option<Supports> {
+        let (w_a, w_b) = (self.pad_a, self.pad_b);
+        Some(Supports {
+            across: [[0.5 * w_a, w_a / self.spacing], [0.5 * w_b, -w_b / self.spacing]],
+            along: [0.0, self.key / self.arm],
+        })
     }
 
     fn validate(&self) -> Result<(), ParameterError> {

@@ -86,6 +86,16 @@ proptest! {
     }
 
     #[test]
+    fn supports_tell_the_same_capacity(bearing in bearing(), (f, n) in load()) {
+        let Supports { across, along: [c, d] } = bearing.supports().expect("all round about the axis");
+        let lengths = across.map(|[a, b]| (a * f[0] - b * n[1]).hypot(a * f[1] + b * n[0]));
+        let sum = lengths[0] + lengths[1] + (c * f[2] + d * n[2]).abs();
+        // The two supports add what they take off each other.
+        let parts: f64 = across.iter().map(|[a, b]| (a * f[0].hypot(f[1])).abs() + (b * n[0].hypot(n[1])).abs()).sum();
+        prop_assert!((bearing.capacity(f, n).value - sum).abs() <= 1e-15 * (4.0 * parts + sum));
+    }
+
+    #[test]
     fn support_forces_balance_force_and_torque(b in journal(), f_a in prop::array::uniform2(-9.0..9.0f64), f_b in prop::array::uniform2(-9.0..9.0f64)) {
         // Forces on A at z = -a/2 and B at z = +a/2, reduced to the origin by r x F.
         let half = 0.5 * b.spacing;

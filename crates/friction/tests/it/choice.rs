@@ -67,6 +67,8 @@ fn chosen_law_is_the_law() {
     let (f, n) = ([1.0, 2.0, 3.0], [0.1, 0.2, 0.3]);
     assert_eq!(Bearing::from(JOURNAL).capacity(f, n), JOURNAL.capacity(f, n));
     assert_eq!(Bearing::from(GUIDE).capacity(f, n), GUIDE.capacity(f, n));
+    assert_eq!(Bearing::from(JOURNAL).supports(), JOURNAL.supports());
+    assert_eq!(Bearing::from(GUIDE).supports(), GUIDE.supports());
     let elastic = ElastoPlastic {
         lugre: LUGRE,
         elastic_share: 0.5,
@@ -91,6 +93,7 @@ fn own_laws_are_taken() {
 
     let own: Arc<dyn BearingModel> = Arc::new(Constant);
     assert_eq!(Bearing::from(own.clone()).capacity([0.0; 3], [0.0; 3]).value, 2.0);
+    assert_eq!(Bearing::from(own.clone()).supports(), None);
     Bearing::from(own).validate().unwrap();
 
     let own: Arc<dyn BristleModel> = Arc::new(Constant);
