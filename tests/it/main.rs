@@ -15,6 +15,7 @@ mod newton_euler;
 mod projection;
 mod puma560;
 mod reaction_loop;
+mod reaction_supports;
 mod recursion_and_lagrange;
 mod redundant_closures;
 mod refusals;

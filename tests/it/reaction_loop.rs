@@ -11,29 +11,39 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::sync::Arc;
 
-/// A machine, and a rough load on some of its joints of one freedom.
+/// A machine, and loads on some of its joints of one freedom.
 #[derive(Clone, Debug)]
-struct Rubbing {
-    blueprint: Blueprint,
-    rough: Vec<(usize, Rough)>,
+pub(crate) struct Rubbing<L> {
+    pub blueprint: Blueprint,
+    pub rough: Vec<(usize, L)>,
 }
 
-fn rubbing(scale: f64) -> impl Strategy<Value = Rubbing> {
-    let rough = (0.2 * scale..scale, 0.1..1.0, 0.2..1.0).prop_map(|(scale, floor, arm)| Rough { scale, floor, arm });
-    let blueprint = strategies::closed(1..=6, 0..=1).prop_filter("well conditioned", |blueprint| {
+/// Closed machines that are well conditioned.
+pub(crate) fn sound(blueprint: impl Strategy<Value = Blueprint>) -> impl Strategy<Value = Blueprint> {
+    blueprint.prop_filter("well conditioned", |blueprint| {
         let machine = blueprint.machine(Formulation::Lagrange);
         let equations = lagrange::equations(&machine.system, &machine.q, &machine.v);
         condition(&equations).is_some_and(|c| c.product() < 1e4)
-    });
+    })
+}
+
+fn rubbing(scale: f64) -> impl Strategy<Value = Rubbing<Rough>> {
+    let rough = (0.2 * scale..scale, 0.1..1.0, 0.2..1.0).prop_map(|(scale, floor, arm)| Rough { scale, floor, arm });
+    let blueprint = sound(strategies::closed(1..=6, 0..=1));
     (blueprint, prop::collection::vec(rough, 3)).prop_filter_map("a joint of one freedom", |(blueprint, rough)| {
-        let single = (0..blueprint.parts.len()).filter(|&k| blueprint.parts[k].joint.speeds() == 1);
-        let rough: Vec<_> = single.zip(rough).collect();
+        let rough: Vec<_> = single(&blueprint).into_iter().zip(rough).collect();
         (!rough.is_empty()).then_some(Rubbing { blueprint, rough })
     })
 }
 
-impl Rubbing {
-    fn description(&self) -> Description {
+/// Parts on joints of one freedom.
+pub(crate) fn single(blueprint: &Blueprint) -> Vec<usize> {
+    let speeds = |k: &usize| blueprint.parts[*k].joint.speeds();
+    (0..blueprint.parts.len()).filter(|k| speeds(k) == 1).collect()
+}
+
+impl<L: ReactionLoad + Copy + 'static> Rubbing<L> {
+    pub fn description(&self) -> Description {
         let (mut description, links) = self.blueprint.description();
         for (part, rough) in &self.rough {
             let load = Arc::new(*rough) as Arc<dyn ReactionLoad>;
@@ -43,7 +53,7 @@ impl Rubbing {
     }
 
     /// The system and its evaluation; `None` where loads and reactions have no equilibrium.
-    fn evaluate(&self, description: Description) -> Option<(System, Workspace)> {
+    pub fn evaluate(&self, description: Description) -> Option<(System, Workspace)> {
         let system = System::new(description).expect("valid");
         let mut work = Workspace::new(&system);
         match system.evaluate(0.0, &self.blueprint.coordinates(), &self.blueprint.speeds(), &mut work) {
@@ -54,7 +64,7 @@ impl Rubbing {
     }
 
     /// The machine with the loads found put on as ordinary drives.
-    fn driven(&self, forces: &[f64]) -> (System, Workspace) {
+    pub fn driven(&self, forces: &[f64]) -> (System, Workspace) {
         let mut blueprint = self.blueprint.clone();
         for ((part, _), force) in self.rough.iter().zip(forces) {
             blueprint.parts[*part].drive[0] += force;
@@ -67,7 +77,7 @@ impl Rubbing {
 }
 
 /// Largest difference relative to the largest entry or 1.
-fn gap(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
     difference(&[a, &[1.0]].concat(), &[b, &[1.0]].concat())
 }
 

@@ -1,6 +1,6 @@
 //! Loads of the simplest kinds.
 
-use linkdyn_dynamics::{Capacity, Load, Loads, Motion, Reaction, ReactionLoad};
+use linkdyn_dynamics::{Capacity, Load, Loads, Motion, Reaction, ReactionLoad, Supports};
 use linkdyn_kinematics::{LinkId, Wrench};
 use nalgebra::Vector3;
 
@@ -107,5 +107,48 @@ impl ReactionLoad for AlongSlide {
                 force: Vector3::new(0.0, 0.0, -sign * self.slope),
             },
         }
+    }
+}
+
+/// A load on three supports: gain `scale tanh(speed)`, capacity as [`Supports`] says.
+#[derive(Clone, Copy, Debug)]
+pub struct OnSupports {
+    /// Factor of the gain \[-\].
+    pub scale: f64,
+    /// The supports.
+    pub supports: Supports,
+    /// Whether the load tells its supports.
+    pub told: bool,
+}
+
+impl ReactionLoad for OnSupports {
+    fn gain(&self, speed: f64) -> f64 {
+        self.scale * speed.tanh()
+    }
+
+    fn capacity(&self, reaction: &Reaction) -> Capacity {
+        let (f, n) = (&reaction.force, &reaction.torque);
+        let mut sum = Capacity {
+            value: 0.0,
+            gradient: Wrench::zero(),
+        };
+        for [a, b] in self.supports.across {
+            let felt = Vector3::new(a * f.x - b * n.y, a * f.y + b * n.x, 0.0);
+            let along = felt.try_normalize(0.0).unwrap_or_default();
+            sum.value += felt.norm();
+            sum.gradient.force += along * a;
+            sum.gradient.torque += Vector3::new(along.y, -along.x, 0.0) * b;
+        }
+        let [c, d] = self.supports.along;
+        let felt = c * f.z + d * n.z;
+        let sign = if felt == 0.0 { 0.0 } else { felt.signum() };
+        sum.value += felt.abs();
+        sum.gradient.force.z += c * sign;
+        sum.gradient.torque.z += d * sign;
+        sum
+    }
+
+    fn supports(&self) -> Option<Supports> {
+        self.told.then_some(self.supports)
     }
 }

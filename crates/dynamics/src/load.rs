@@ -172,6 +172,27 @@ pub struct Capacity {
     pub gradient: Wrench,
 }
 
+/// What carries a reaction where all parts are round about the z axis: two supports across it and one along it. The capacity
+/// is a sum of lengths, with `z` the unit vector of the axis:
+///
+/// `sum over i of |a_i f + b_i z x n|, parts across z, + |c f_z + d n_z|`, `across[i] = [a_i, b_i]`, `along = [c, d]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Supports {
+    /// Weights of force and torque on the two supports across the axis \[m and -, or - and 1/m\].
+    pub across: [[f64; 2]; 2],
+    /// Weights of force and torque on the one along it \[m and -, or - and 1/m\].
+    pub along: [f64; 2],
+}
+
+impl Supports {
+    /// All weights, those along the axis last.
+    pub(crate) fn weights(&self) -> [f64; 6] {
+        let [[a1, b1], [a2, b2]] = self.across;
+        let [c, d] = self.along;
+        [a1, b1, a2, b2, c, d]
+    }
+}
+
 /// A load on one joint that depends on the reaction which it helps to cause, such as dry friction: the generalised force is
 /// `-gain(speed) * capacity(reaction)`. These loads are found together with the accelerations, at every evaluation.
 pub trait ReactionLoad: Debug + Send + Sync {
@@ -180,4 +201,10 @@ pub trait ReactionLoad: Debug + Send + Sync {
 
     /// Capacity for a reaction.
     fn capacity(&self, reaction: &Reaction) -> Capacity;
+
+    /// The supports whose sum [`ReactionLoad::capacity`] is, if it is one. Where all loads of a system tell them, they are
+    /// found several times as fast. Asked for once, when a workspace is made.
+    fn supports(&self) -> Option<Supports> {
+        None
+    }
 }

@@ -8,12 +8,7 @@ use linkdyn_kinematics::{Freedom, LinkId, Node, NodePosition, Twist, Wrench};
 
 /// Increments of acceleration for rates of the speeds alone, outward.
 #[inline]
-pub(crate) fn acceleration_step(
-    node: &Node,
-    here: &NodePosition,
-    before: &Twist,
-    rate: impl FnOnce(usize) -> f64,
-) -> Twist {
+fn acceleration_step(node: &Node, here: &NodePosition, before: &Twist, rate: impl FnOnce(usize) -> f64) -> Twist {
     let mut twist = Twist {
         angular: before.angular,
         linear: before.linear + before.angular.cross(&here.arm),
@@ -67,7 +62,7 @@ impl System {
 
 /// A wrench in global axes, turned to the axes of a node.
 #[inline]
-pub(crate) fn in_axes_of(node: &NodePosition, wrench: &Wrench) -> Wrench {
+fn in_axes_of(node: &NodePosition, wrench: &Wrench) -> Wrench {
     Wrench {
         torque: node.rotation.tr_mul(&wrench.torque),
         force: node.rotation.tr_mul(&wrench.force),

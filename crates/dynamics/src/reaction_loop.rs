@@ -11,13 +11,14 @@
 //! no common equilibrium any more: the mechanism jams.
 
 use crate::error::DynamicsError;
-use crate::evaluate::inertial_wrench;
+use crate::influence::Influence;
 use crate::linear::Lu;
 use crate::load::Reaction;
-use crate::reaction::{acceleration_step, in_axes_of};
-use crate::system::{ReactionSolver, System};
+use crate::supports;
+use crate::system::{OnNode, ReactionSolver, System};
 use crate::workspace::Workspace;
-use linkdyn_kinematics::Wrench;
+use nalgebra::Vector3;
+use std::array::from_fn;
 
 /// Newton steps before the solution is followed from vanishing loads on.
 const DIRECT_ITERATIONS: usize = 10;
@@ -32,6 +33,7 @@ const AT_THE_FOLD: f64 = 1e-3;
 #[derive(Clone, Debug)]
 pub(crate) struct ReactionLoop {
     loads: usize,
+    pub influence: Influence,
     /// Generalised forces found.
     forces: Vec<f64>,
     trial: Vec<f64>,
@@ -39,12 +41,6 @@ pub(crate) struct ReactionLoop {
     known: Vec<f64>,
     tangent: Vec<f64>,
     gains: Vec<f64>,
-    /// Reactions without these loads, one a load, in the successor's axes.
-    base: Vec<Reaction>,
-    /// Change of reaction `j` for unit force `k`, at `j * loads + k`.
-    influence: Vec<Reaction>,
-    /// Multipliers for the unit force at hand.
-    multipliers: Vec<f64>,
     jacobian: Lu,
     step: Vec<f64>,
     residual: f64,
@@ -63,14 +59,12 @@ impl ReactionLoop {
         let loads = system.reaction_loads.len();
         Self {
             loads,
+            influence: Influence::new(system),
             forces: vec![0.0; loads],
             trial: vec![0.0; loads],
             known: vec![0.0; loads],
             tangent: vec![0.0; loads],
             gains: vec![0.0; loads],
-            base: vec![Wrench::zero(); loads],
-            influence: vec![Wrench::zero(); loads * loads],
-            multipliers: vec![0.0; system.equations],
             jacobian: Lu::new(loads),
             step: vec![0.0; loads],
             residual: 0.0,
@@ -96,29 +90,59 @@ impl ReactionLoop {
         let n = self.loads;
         let mut worst: f64 = 0.0;
         let mut largest: f64 = 0.0;
-        for (j, load) in system.reaction_loads.iter().enumerate() {
-            let mut reaction = self.base[j];
-            for (influence, force) in self.influence[j * n..(j + 1) * n].iter().zip(&self.trial) {
-                reaction.force += influence.force * *force;
-                reaction.torque += influence.torque * *force;
+        for (j, on) in system.reaction_loads.iter().enumerate() {
+            let mut felt = self.influence.felt_by(j, 0);
+            for (k, force) in self.trial.iter().enumerate() {
+                let unit = self.influence.felt_by(j, 1 + k);
+                felt = from_fn(|i| felt[i] + unit[i] * force);
             }
-            let capacity = load.load.capacity(&reaction);
+            let (capacity, gradient) = if self.influence.has_supports() {
+                capacity_of_supports(felt)
+            } else {
+                capacity_of_load(on, felt)
+            };
             let gain = share * self.gains[j];
-            let residual = self.trial[j] + gain * capacity.value;
+            let residual = self.trial[j] + gain * capacity;
             self.step[j] = -residual;
             worst = worst.max(residual.abs());
-            largest = largest.max(self.trial[j].abs()).max((gain * capacity.value).abs());
-            let row = &mut self.jacobian.matrix[j * n..(j + 1) * n];
-            for (k, (entry, influence)) in row.iter_mut().zip(&self.influence[j * n..(j + 1) * n]).enumerate() {
-                let slope =
-                    capacity.gradient.force.dot(&influence.force) + capacity.gradient.torque.dot(&influence.torque);
-                *entry = gain * slope + f64::from(u8::from(j == k));
+            largest = largest.max(self.trial[j].abs()).max((gain * capacity).abs());
+            for k in 0..n {
+                let slope: f64 = gradient
+                    .iter()
+                    .zip(self.influence.felt_by(j, 1 + k))
+                    .map(|(g, x)| g * x)
+                    .sum();
+                self.jacobian.matrix[j * n + k] = gain * slope + f64::from(u8::from(j == k));
             }
             if residual.is_nan() {
                 return f64::NAN;
             }
         }
         if largest == 0.0 { 0.0 } else { worst / largest }
+    }
+
+    /// Newton's method at full gains from vanishing loads, on the short way where there is one.
+    #[inline]
+    fn newton_direct(&mut self, system: &System, tolerance: f64, iterations: &mut u64) -> Outcome {
+        if self.influence.has_supports()
+            && let Some(end) = supports::newton(
+                self.influence.felt(),
+                &self.gains,
+                &mut self.trial,
+                tolerance,
+                DIRECT_ITERATIONS,
+            )
+        {
+            *iterations += end.iterations;
+            (self.measure, self.residual) = (end.measure, end.residual);
+            return if end.residual <= tolerance {
+                Outcome::Solved
+            } else {
+                Outcome::Open(end.residual)
+            };
+        }
+        self.trial.fill(0.0);
+        self.newton(system, 1.0, tolerance, DIRECT_ITERATIONS, iterations)
     }
 
     /// Newton's method from `trial`; `measure` is that of the last Jacobian.
@@ -238,26 +262,24 @@ impl System {
         if state.gains.iter().all(|&gain| gain == 0.0) {
             return Ok(());
         }
-        self.influences(work);
+        self.find_influence(work);
 
         let mut iterations = 0;
         let state = &mut work.reaction_loop;
         let result = match self.reaction_solver {
-            ReactionSolver::Newton { tolerance } => {
-                match state.newton(self, 1.0, tolerance, DIRECT_ITERATIONS, &mut iterations) {
-                    Outcome::Solved if state.measure > 0.0 => Ok(()),
-                    outcome => {
-                        work.counters.reaction_continuations += 1;
-                        let other = matches!(outcome, Outcome::Solved).then_some(state.measure);
-                        match (state.follow(self, time, tolerance, &mut iterations), other) {
-                            (Err(DynamicsError::Jammed { speed, .. }), Some(measure)) => {
-                                Err(DynamicsError::NotUnique { time, speed, measure })
-                            }
-                            (result, _) => result,
+            ReactionSolver::Newton { tolerance } => match state.newton_direct(self, tolerance, &mut iterations) {
+                Outcome::Solved if state.measure > 0.0 => Ok(()),
+                outcome => {
+                    work.counters.reaction_continuations += 1;
+                    let other = matches!(outcome, Outcome::Solved).then_some(state.measure);
+                    match (state.follow(self, time, tolerance, &mut iterations), other) {
+                        (Err(DynamicsError::Jammed { speed, .. }), Some(measure)) => {
+                            Err(DynamicsError::NotUnique { time, speed, measure })
                         }
+                        (result, _) => result,
                     }
                 }
-            }
+            },
             ReactionSolver::Sweeps { sweeps } => {
                 for _ in 0..sweeps {
                     state.linearise(self, 1.0);
@@ -275,59 +297,33 @@ impl System {
         Ok(())
     }
 
-    /// Reactions without the loads, and their changes for a unit force of each load.
-    fn influences(&self, work: &mut Workspace) {
-        let n = self.reaction_loads.len();
-        self.reactions(work);
-        let nodes = self.tree.nodes();
-        for (j, load) in self.reaction_loads.iter().enumerate() {
-            let reaction = in_axes_of(&work.positions.nodes()[load.node], &work.reactions[load.node]);
-            work.reaction_loop.base[j] = reaction;
-        }
-        work.counters.reaction_sweeps += n as u64;
-        for k in 0..n {
-            let state = &mut work.reaction_loop;
-            for (row, multiplier) in state.multipliers.iter_mut().enumerate() {
-                *multiplier = work.constraint.all().at(row, self.first_unit() + k);
-            }
-            let positions = work.positions.nodes();
-            for (i, node) in nodes.iter().enumerate().skip(1) {
-                let rate = |speed: usize| work.solutions.at(speed, self.first_unit() + k);
-                let twist = acceleration_step(node, &positions[i], &work.twists[node.parent], rate);
-                work.twists[i] = twist;
-                work.wrenches[i] = inertial_wrench(&work.inertias[i], &twist);
-            }
-            let mut first = 0;
-            for closure in &self.closures {
-                let lambda = &state.multipliers[first..first + closure.equations()];
-                let (on_predecessor, on_successor) = closure.wrenches(&work.positions, lambda);
-                work.wrenches[closure.predecessor().link.node()] -= on_predecessor;
-                work.wrenches[closure.successor().link.node()] -= on_successor;
-                first += closure.equations();
-            }
-            for (i, node) in nodes.iter().enumerate().skip(1).rev() {
-                if node.parent != 0 {
-                    let total = work.wrenches[i].shifted(&positions[i].arm);
-                    work.wrenches[node.parent] += total;
-                }
-            }
-            for (j, load) in self.reaction_loads.iter().enumerate() {
-                state.influence[j * n + k] = in_axes_of(&positions[load.node], &work.wrenches[load.node]);
-            }
-        }
-    }
-
     /// Adds what the loads found do to rates, multipliers and power.
+    #[inline]
     fn add_reaction_loads(&self, v: &[f64], work: &mut Workspace) {
-        let first_unit = self.first_unit();
         let state = &mut work.reaction_loop;
         state.forces.copy_from_slice(&state.trial);
-        work.constraint.add_loads(first_unit, &state.forces);
-        for (k, (force, load)) in state.forces.iter().zip(&self.reaction_loads).enumerate() {
-            for (speed, rate) in work.rates.iter_mut().enumerate() {
-                *rate += work.solutions.at(speed, first_unit + k) * force;
-            }
-            work.power += force * v[load.speed];
+        state.influence.add_rates(&state.forces, &mut work.rates);
+        work.constraint.add_loads(self.first_unit(), &state.forces);
+        for (force, on) in state.forces.iter().zip(&self.reaction_loads) {
+            work.power += force * v[on.speed];
         }
     }
+}
+
+/// Capacity of supports, the sum of the lengths felt, and its gradient. A length of zero has the gradient zero.
+fn capacity_of_supports([ax, ay, bx, by, z, _]: [f64; 6]) -> (f64, [f64; 6]) {
+    let (a, b, along) = (ax.hypot(ay), bx.hypot(by), z.abs());
+    let per = |x: f64, length: f64| if length == 0.0 { 0.0 } else { x / length };
+    let gradient = [per(ax, a), per(ay, a), per(bx, b), per(by, b), per(z, along), 0.0];
+    (a + b + along, gradient)
+}
+
+/// Capacity of any load, and its gradient.
+fn capacity_of_load(on: &OnNode, [fx, fy, fz, nx, ny, nz]: [f64; 6]) -> (f64, [f64; 6]) {
+    let capacity = on.load.capacity(&Reaction {
+        torque: Vector3::new(nx, ny, nz),
+        force: Vector3::new(fx, fy, fz),
+    });
+    let (f, n) = (capacity.gradient.force, capacity.gradient.torque);
+    (capacity.value, [f.x, f.y, f.z, n.x, n.y, n.z])
 }

@@ -1,5 +1,6 @@
 //! Symmetric 3 x 3 matrices by their six numbers, and inertias made of them.
 
+use crate::lanes::Vectors;
 use nalgebra::{Matrix3, Vector3};
 
 /// A symmetric 3 x 3 matrix.
@@ -64,6 +65,16 @@ impl Symmetric {
             self.xy * v.x + self.yy * v.y + self.yz * v.z,
             self.xz * v.x + self.yz * v.y + self.zz * v.z,
         )
+    }
+
+    /// Products with vectors in lanes.
+    #[inline(always)]
+    pub fn times_lanes<const N: usize>(&self, v: &Vectors<N>) -> Vectors<N> {
+        [
+            v[0] * self.xx + v[1] * self.xy + v[2] * self.xz,
+            v[0] * self.xy + v[1] * self.yy + v[2] * self.yz,
+            v[0] * self.xz + v[1] * self.yz + v[2] * self.zz,
+        ]
     }
 
     /// `self -= k a a^T`.

@@ -1,6 +1,6 @@
 //! Friction in a joint: a characteristic over the joint speed times the capacity of a bearing.
 
-use linkdyn_dynamics::{Capacity, Reaction, ReactionLoad};
+use linkdyn_dynamics::{Capacity, Reaction, ReactionLoad, Supports};
 use linkdyn_friction::{Bearing, BearingModel, Characteristic, Friction};
 use linkdyn_kinematics::Wrench;
 use nalgebra::Vector3;
@@ -29,5 +29,10 @@ impl ReactionLoad for JointFriction {
                 torque: Vector3::from(capacity.d_torque),
             },
         }
+    }
+
+    fn supports(&self) -> Option<Supports> {
+        let linkdyn_friction::Supports { across, along } = self.bearing.supports()?;
+        Some(Supports { across, along })
     }
 }
