@@ -5,10 +5,13 @@ mod control;
 mod error;
 mod hermite;
 mod integration;
+mod jacobian;
 mod lanes;
+mod linear;
 mod method;
 mod newmark;
 mod problem;
+mod radau;
 mod runge_kutta;
 mod settings;
 mod statistics;
@@ -21,6 +24,7 @@ pub use integration::{Integration, Progress};
 pub use method::{Counted, Method, Step};
 pub use newmark::{Corrector, Newmark, NotSettled};
 pub use problem::{EvalError, Ode, SecondOrder, Source};
+pub use radau::Radau5;
 pub use runge_kutta::{
     ClassicalTableau, Coefficients, Dop853, Dop853Tableau, DormandPrince5, DormandPrince5Tableau, Embedded, Rk4,
     RungeKutta, Tableau,

@@ -34,6 +34,35 @@ impl<'a, P: Ode + ?Sized> Counted<'a, P> {
         self.rhs(t, y, dy)
     }
 
+    /// As [`rhs`](Counted::rhs), for evaluations that only the differences of a Jacobian matrix need.
+    ///
+    /// # Errors
+    /// Those of the problem.
+    pub fn rhs_for_jacobian(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        self.statistics.jacobian_evaluations += 1;
+        self.rhs(t, y, dy)
+    }
+
+    /// Asks the problem for df/dy, see [`Ode::jacobian`], and counts it as formed, by whomever.
+    ///
+    /// # Errors
+    /// Those of the problem.
+    pub fn jacobian(&mut self, t: f64, y: &[f64], matrix: &mut [f64]) -> Result<bool, EvalError> {
+        self.statistics.jacobians += 1;
+        matrix.fill(0.0);
+        self.problem.jacobian(t, y, matrix)
+    }
+
+    /// Counts an attempt given up because its equations could not be solved.
+    pub fn count_divergence(&mut self) {
+        self.statistics.divergences += 1;
+    }
+
+    /// Counts matrices factorised.
+    pub fn count_factorisations(&mut self, matrices: u64) {
+        self.statistics.factorisations += matrices;
+    }
+
     /// Counts one corrector iteration.
     pub fn count_iteration(&mut self) {
         self.statistics.iterations += 1;

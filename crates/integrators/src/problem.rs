@@ -39,6 +39,28 @@ pub trait Ode {
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, EvalError> {
         Ok(false)
     }
+
+    /// Writes df/dy at (t, y) into `matrix`, row after row (`matrix[i * dim + j]` is dfᵢ/dyⱼ), which holds zeros before; returns false
+    /// if it is to be found by differences of f. By default it is.
+    ///
+    /// Implicit methods only. Their steps get shorter or need more evaluations where it is wrong, the result does not change.
+    ///
+    /// # Errors
+    /// As for [`rhs`](Ode::rhs).
+    fn jacobian(&mut self, _t: f64, _y: &[f64], _matrix: &mut [f64]) -> Result<bool, EvalError> {
+        Ok(false)
+    }
+
+    /// The number of components at the end of y on which f does not depend (quadratures). By default there are none.
+    fn quadratures(&self) -> usize {
+        0
+    }
+
+    /// The number of positions with which y begins if as many rates follow: `y[i]' = y[pairs + i]`, as for [`SecondOrder`]. By
+    /// default 0, which is never wrong; more saves implicit methods most of their linear algebra.
+    fn second_order_pairs(&self) -> usize {
+        0
+    }
 }
 
 /// A problem whose state begins with positions and their rates.
@@ -60,6 +82,15 @@ impl<P: Ode + ?Sized> Ode for &mut P {
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
         (**self).project(t, y)
     }
+    fn jacobian(&mut self, t: f64, y: &[f64], matrix: &mut [f64]) -> Result<bool, EvalError> {
+        (**self).jacobian(t, y, matrix)
+    }
+    fn quadratures(&self) -> usize {
+        (**self).quadratures()
+    }
+    fn second_order_pairs(&self) -> usize {
+        (**self).second_order_pairs()
+    }
 }
 
 impl<P: SecondOrder + ?Sized> SecondOrder for &mut P {
@@ -77,6 +108,15 @@ impl<P: Ode + ?Sized> Ode for Box<P> {
     }
     fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
         (**self).project(t, y)
+    }
+    fn jacobian(&mut self, t: f64, y: &[f64], matrix: &mut [f64]) -> Result<bool, EvalError> {
+        (**self).jacobian(t, y, matrix)
+    }
+    fn quadratures(&self) -> usize {
+        (**self).quadratures()
+    }
+    fn second_order_pairs(&self) -> usize {
+        (**self).second_order_pairs()
     }
 }
 

@@ -12,15 +12,19 @@ pub struct Statistics {
     pub evaluations: u64,
     /// Those of the evaluations that only interpolation asked for.
     pub dense_evaluations: u64,
+    /// Those of the evaluations that only differences for Jacobian matrices asked for.
+    pub jacobian_evaluations: u64,
     /// Calls of [`Ode::project`](crate::Ode::project).
     pub projections: u64,
     /// Answers [`EvalError::Retry`](crate::EvalError::Retry), each of which threw a step away.
     pub retries: u64,
     /// Corrector iterations of implicit formulas.
     pub iterations: u64,
-    /// Jacobian matrices formed.
+    /// Attempts given up because the corrector of an implicit formula did not converge; part of those rejected.
+    pub divergences: u64,
+    /// Jacobian matrices formed, by the problem or by differences.
     pub jacobians: u64,
-    /// Matrices factorised.
+    /// Matrices factorised; [`Radau5`](crate::Radau5) factorises two at a time, a real and a complex one.
     pub factorisations: u64,
     /// Events located.
     pub events: u64,

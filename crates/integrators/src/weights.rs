@@ -6,6 +6,7 @@ use crate::lanes::{LANES, Lanes};
 #[derive(Debug, Clone)]
 pub struct Weights {
     inverse_dim: f64,
+    least_relative: f64,
     scales: Vec<Scale>,
 }
 
@@ -34,8 +35,13 @@ impl Weights {
             relative: Lanes::load(relative),
             absolute: Lanes::load_or(absolute, 1.0),
         };
+        let controlled = relative
+            .iter()
+            .zip(absolute)
+            .filter(|(_, absolute)| absolute.is_finite());
         Self {
             inverse_dim: 1.0 / relative.len().max(1) as f64,
+            least_relative: controlled.map(|(&relative, _)| relative).fold(1.0, f64::min),
             scales: blocks.map(scale).collect(),
         }
     }
@@ -63,6 +69,17 @@ impl Weights {
         sums.map(|sum| self.mean(sum))
     }
 
+    /// The smallest relative tolerance of all components that are controlled; 1 if none is.
+    pub(crate) fn least_relative(&self) -> f64 {
+        self.least_relative
+    }
+
+    /// The tolerance of one component at the value `y`; infinite if it is not controlled.
+    pub(crate) fn of(&self, component: usize, y: f64) -> f64 {
+        let Scale { relative, absolute } = self.scales[component / LANES];
+        absolute.0[component % LANES] + relative.0[component % LANES] * y.abs()
+    }
+
     /// The scales of the blocks, for methods that do all their work in one pass.
     #[inline]
     pub(crate) fn scales(&self) -> &[Scale] {
@@ -77,11 +94,7 @@ impl Weights {
 
     /// The component whose error is largest against its tolerance.
     pub(crate) fn worst(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> Option<usize> {
-        let scaled = |i: usize| {
-            let Scale { relative, absolute } = self.scales[i / LANES];
-            let size = y0[i].abs().max(y1[i].abs());
-            (error[i] / (absolute.0[i % LANES] + relative.0[i % LANES] * size)).abs()
-        };
+        let scaled = |i: usize| (error[i] / self.of(i, y0[i].abs().max(y1[i].abs()))).abs();
         (0..error.len()).max_by(|&i, &j| scaled(i).total_cmp(&scaled(j)))
     }
 }

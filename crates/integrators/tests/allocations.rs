@@ -1,7 +1,8 @@
 //! After the first step nothing is allocated. (A target of its own: it replaces the global allocator.)
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Rk4, SecondOrder, Settings,
+    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Radau5, Rk4, SecondOrder,
+    Settings,
 };
 
 struct Pendulum;
@@ -51,4 +52,6 @@ fn no_step_allocates() {
     assert_eq!(allocations(DormandPrince5::default()), 0);
     assert_eq!(allocations(Dop853::default()), 0);
     assert_eq!(allocations(Adams::default()), 0);
+    assert_eq!(allocations(Radau5::default()), 0);
+    assert_eq!(allocations(Radau5::fixed(0.01)), 0);
 }

@@ -1,7 +1,8 @@
 //! Order of each method, of its solution and of its interpolation.
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, Integration, Method, Newmark, Ode, Progress, Rk4, SecondOrder, Settings,
+    Adams, Corrector, Dop853, DormandPrince5, Integration, Method, Newmark, Ode, Progress, Radau5, Rk4, SecondOrder,
+    Settings,
 };
 
 use crate::problems::{Damped, Kink, Rational, distance, solve};
@@ -89,6 +90,11 @@ fn dop853() {
 }
 
 #[test]
+fn radau_5() {
+    assert_orders(orders(Radau5::fixed, [0.5, 0.2, 0.1]), 5.0, 0.15);
+}
+
+#[test]
 fn newmark() {
     let settled = |step| {
         Newmark::new(
@@ -150,6 +156,7 @@ fn interpolation() {
         &|h| dense_error(Damped, Dop853::fixed(h), &Damped::START, Damped::exact),
         0.5,
     );
+    let radau = order(&|h| dense_error(Kink, Radau5::fixed(h), &Kink::START, Kink::exact), 0.1);
     let corrector = Corrector::Until {
         change: 1e-14,
         at_most: 100,
@@ -158,7 +165,13 @@ fn interpolation() {
         &|h| dense_error(Kink, Newmark::new(h, corrector), &Kink::START, Kink::exact),
         0.1,
     );
-    for (found, expected, margin) in [(rk4, 4.0, 0.05), (dp5, 5.0, 0.3), (dop, 8.0, 0.4), (newmark, 2.0, 0.05)] {
+    for (found, expected, margin) in [
+        (rk4, 4.0, 0.05),
+        (dp5, 5.0, 0.3),
+        (dop, 8.0, 0.4),
+        (radau, 4.0, 0.1),
+        (newmark, 2.0, 0.05),
+    ] {
         assert!(
             (found - expected).abs() < margin,
             "local order {found}, expected {expected}"

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use linkdyn_integrators::{
     Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark, NotSettled,
-    Ode, Progress, Rk4, Settings,
+    Ode, Progress, Radau5, Rk4, Settings,
 };
 
 use crate::problems::{Damped, Function, Kink};
@@ -36,7 +36,7 @@ fn failure<P: Ode, M: Method<P>>(
 }
 
 /// The same with each adaptive method.
-fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 3] {
+fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 4] {
     let dim = y0.len();
     [
         failure(
@@ -49,6 +49,7 @@ fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 3] {
         ),
         failure(Function(dim, rhs), Dop853::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Adams::default(), 0.0, y0, end, Settings::default()),
+        failure(Function(dim, rhs), Radau5::default(), 0.0, y0, end, Settings::default()),
     ]
 }
 
@@ -248,6 +249,7 @@ fn a_failing_projection() {
     for (error, reached) in [
         failure(Stubborn, Dop853::default(), 0.0, &[0.0], 2.0, Settings::default()),
         failure(Stubborn, Adams::default(), 0.0, &[0.0], 2.0, Settings::default()),
+        failure(Stubborn, Radau5::default(), 0.0, &[0.0], 2.0, Settings::default()),
     ] {
         assert!(
             matches!(error, IntegrationError::StepTooSmall { source: Some(_), .. }),

@@ -1,11 +1,13 @@
 //! Public behaviour of the crate.
 
 mod any_numbers;
+mod benchmark_05_standard_odes;
 mod convergence;
 mod counters;
 mod failures;
 mod output;
 mod problems;
+mod radau;
 mod settings;
 mod stops;
 mod tolerance;

@@ -1,8 +1,8 @@
 //! Output must not change the run.
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress, Rk4,
-    Settings,
+    Adams, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress, Radau5,
+    Rk4, Settings,
 };
 
 use crate::problems::{Counting, Damped, Kink, Pleiades, distance, finish};
@@ -43,9 +43,11 @@ fn the_path_is_the_same_to_the_last_bit() {
     check(|| Kink, DormandPrince5::default, &Kink::START);
     check(|| Kink, Dop853::default, &Kink::START);
     check(|| Kink, Adams::default, &Kink::START);
+    check(|| Kink, Radau5::default, &Kink::START);
     // With refused steps.
     check(|| Pleiades, Dop853::default, &Pleiades::START);
     check(|| Pleiades, Adams::default, &Pleiades::START);
+    check(|| Pleiades, Radau5::default, &Pleiades::START);
 }
 
 #[test]
@@ -74,6 +76,7 @@ fn interpolation_is_continuous_from_step_to_step() {
     check(DormandPrince5::default());
     check(Dop853::default());
     check(Adams::default());
+    check(Radau5::default());
 }
 
 #[test]

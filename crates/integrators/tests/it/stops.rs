@@ -1,8 +1,8 @@
 //! Stops, projection, and going on from another state.
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Progress, Rk4, SecondOrder,
-    Settings,
+    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Progress, Radau5, Rk4,
+    SecondOrder, Settings,
 };
 
 use crate::problems::{Damped, Function, distance, finish};
@@ -63,6 +63,8 @@ fn stops_are_hit_exactly() {
     check(DormandPrince5::default(), 1e-6);
     check(Dop853::default(), 1e-6);
     check(Adams::default(), 1e-6);
+    check(Radau5::default(), 1e-6);
+    check(Radau5::fixed(0.05), 1e-6);
 }
 
 /// z' = z, evaluated only between these bounds.
@@ -136,6 +138,7 @@ fn stops_of_all_kinds() {
     check(DormandPrince5::default, 1e-8, 800);
     check(Dop853::default, 1e-8, 800);
     check(Adams::default, 1e-8, 800);
+    check(Radau5::default, 1e-8, 2000);
 }
 
 /// t + h may round to beyond the stop; f must not be asked for there.
@@ -227,6 +230,7 @@ fn a_problem_switched_at_a_stop() {
     check(DormandPrince5::default());
     check(Dop853::default());
     check(Adams::default());
+    check(Radau5::default());
 }
 
 /// A point on the unit circle whose right-hand side drifts off it.
@@ -267,6 +271,7 @@ fn projection_keeps_the_invariant_at_every_step() {
     check(DormandPrince5::default());
     check(Dop853::default());
     check(Adams::default());
+    check(Radau5::default());
 }
 
 #[test]
@@ -291,9 +296,10 @@ fn problems_and_methods_as_trait_objects() {
     let boxed: Box<dyn Ode> = Box::new(Damped);
     let mut run = Integration::new(boxed, Adams::default(), 0.0, &Damped::START, Settings::default()).expect("good");
     finish(&mut run, 1.0);
-    let methods: [Box<dyn Method<Damped>>; 3] = [
+    let methods: [Box<dyn Method<Damped>>; 4] = [
         Box::new(Dop853::default()),
         Box::new(Adams::default()),
+        Box::new(Radau5::default()),
         Box::new(Rk4::new(0.01)),
     ];
     for method in methods {

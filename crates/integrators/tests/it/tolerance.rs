@@ -1,6 +1,6 @@
 //! What a tolerance buys.
 
-use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Integration, Method, Ode, Settings};
+use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Settings};
 
 use crate::problems::{Damped, Function, Kink, Pleiades, distance, finish, solve};
 
@@ -38,6 +38,7 @@ fn error_follows_tolerance() {
     all_respond(DormandPrince5::default);
     all_respond(Dop853::default);
     all_respond(Adams::default);
+    all_respond(Radau5::default);
 }
 
 #[test]
@@ -121,4 +122,5 @@ fn backward_and_back() {
     there_and_back(DormandPrince5::default());
     there_and_back(Dop853::default());
     there_and_back(Adams::default());
+    there_and_back(Radau5::default());
 }

@@ -1,0 +1,365 @@
+//! The Radau IIA method of order 5 for stiff problems.
+
+mod coefficients;
+mod control;
+mod polynomial;
+mod stages;
+mod systems;
+
+use crate::jacobian::differences;
+use crate::{Counted, EvalError, Method, NotSettled, Ode, SettingsError, Step, Weights};
+use control::{Convergence, Prediction, Verdict, effort};
+use polynomial::Polynomial;
+use stages::Stages;
+use systems::{Layout, Systems};
+
+/// The Radau IIA method of three stages and order 5, for stiff problems (Hairer, Wanner II, IV.8).
+///
+/// Implicit, L-stable. The equations of a step are solved by simplified Newton iterations, each of which costs 3 evaluations, one
+/// real and one complex system of equations; df/dy and the factors serve for as many steps as they can. If the problem
+/// [tells](Ode::second_order_pairs) that it begins with positions and their rates, these systems are as small as the number of rates.
+/// One more evaluation closes a step.
+///
+/// The error is estimated by a formula of order 3 while the solution is of order 5, so it is mostly far smaller than the
+/// tolerance: near tolerance^1.25. Interpolation is by the collocation polynomial, at no cost; its error is of the order of the
+/// estimate. Newton's iteration does not see components whose tolerance is infinite: this is meant for
+/// [quadratures](Ode::quadratures), which are integrated after it.
+#[derive(Debug, Clone)]
+pub struct Radau5 {
+    /// Length of fixed steps.
+    fixed: Option<f64>,
+    /// df/dy is kept as long as Newton's changes shrink to this part.
+    reuse: f64,
+    layout: Layout,
+    stages: Stages,
+    systems: Systems,
+    polynomial: Polynomial,
+    jacobian: Vec<f64>,
+    known: Known,
+    /// Newton's iteration converges so slowly that the next step shall have a new df/dy.
+    outdated: bool,
+    /// f at the start of the step and at its end.
+    f_old: Vec<f64>,
+    f_new: Vec<f64>,
+    y: Vec<f64>,
+    /// What projection has added to the end of the step last closed.
+    jump: Vec<f64>,
+    prediction: Prediction,
+    left: f64,
+    effort: f64,
+    /// Attempts made of this step.
+    attempts: u32,
+    /// By how much to shorten a step that Newton's iteration has not solved.
+    shorten: Option<f64>,
+}
+
+/// What is known of df/dy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    Nothing,
+    /// At the start of an earlier step.
+    Earlier,
+    /// At the start of this one.
+    Here,
+}
+
+/// How Newton's iteration ended.
+#[derive(Debug)]
+enum Solution {
+    Found(Convergence),
+    /// A step shorter by this factor may succeed.
+    Failed(f64, Convergence),
+    /// f is not finite at this stage.
+    NotFinite(usize),
+}
+
+/// The contraction up to which df/dy is kept: that of subroutine RADAU5.
+const REUSE: f64 = 0.001;
+
+/// Most iterations of an adaptive step (subroutine RADAU5), and of a fixed one, which cannot be shortened.
+const MOST_ITERATIONS: u32 = 7;
+const MOST_ITERATIONS_FIXED: u32 = 20;
+
+impl Default for Radau5 {
+    /// With steps chosen by the tolerances.
+    fn default() -> Self {
+        let (layout, stages) = (Layout::default(), Stages::new(Layout::default()));
+        let (real, complex, nodes) = (
+            stages.coefficients.real,
+            stages.coefficients.complex,
+            stages.coefficients.c,
+        );
+        Self {
+            fixed: None,
+            reuse: REUSE,
+            layout,
+            stages,
+            systems: Systems::new(layout, real, complex),
+            polynomial: Polynomial::new(nodes, 0),
+            jacobian: Vec::new(),
+            known: Known::Nothing,
+            outdated: false,
+            f_old: Vec::new(),
+            f_new: Vec::new(),
+            y: Vec::new(),
+            jump: Vec::new(),
+            prediction: Prediction::default(),
+            left: 1.0,
+            effort: 1.0,
+            attempts: 0,
+            shorten: None,
+        }
+    }
+}
+
+impl Radau5 {
+    /// With steps of this length, whatever the tolerances; Newton's iteration goes on to rounding.
+    ///
+    /// Where it does not converge the run ends with [`NotSettled`] as its cause.
+    #[must_use]
+    pub fn fixed(step: f64) -> Self {
+        Self {
+            fixed: Some(step),
+            ..Self::default()
+        }
+    }
+
+    /// Keeps df/dy from step to step as long as the changes in Newton's iteration shrink to this part or less, 0 ≤ part < 1: 0.001 by
+    /// default; 0 finds it anew for each step. More saves Jacobian matrices and costs iterations.
+    #[must_use]
+    pub fn with_reuse(mut self, part: f64) -> Self {
+        self.reuse = part;
+        self
+    }
+
+    /// Finds df/dy at the start of the step.
+    fn find_jacobian<P: Ode + ?Sized>(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        Step { t, h, y }: Step<'_>,
+        weights: &Weights,
+    ) -> Result<(), EvalError> {
+        self.known = Known::Nothing;
+        self.systems.clear();
+        if !problem.jacobian(t, y, &mut self.jacobian)? {
+            let [scratch, ..] = &mut self.stages.f;
+            let scratch = [&mut self.y[..], scratch];
+            let (active, matrix) = (self.layout.active, &mut self.jacobian);
+            differences(problem, (t, h), (y, &self.f_old), weights, active, scratch, matrix)?;
+        }
+        self.known = Known::Here;
+        Ok(())
+    }
+
+    /// Newton's iteration for one step.
+    fn solve<P: Ode + ?Sized>(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        weights: &Weights,
+    ) -> Result<Solution, EvalError> {
+        // As in subroutine RADAU5: rounding limits what a relative tolerance may ask for.
+        let relative = weights.least_relative();
+        let rounding = 10.0 * f64::EPSILON / relative;
+        let mut convergence = match self.fixed {
+            None => Convergence::new(
+                MOST_ITERATIONS,
+                rounding.max(relative.sqrt().min(0.03)),
+                true,
+                self.left,
+            ),
+            Some(_) => Convergence::new(MOST_ITERATIONS_FIXED, rounding, false, 1.0),
+        };
+        if !self.systems.fit(step.h) {
+            problem.count_factorisations(2);
+            if self.systems.factorise(&self.jacobian, step.h).is_err() {
+                return Ok(Solution::Failed(0.5, convergence));
+            }
+        }
+        self.stages.predict(step.h, &self.polynomial);
+        loop {
+            problem.count_iteration();
+            if let Some(stage) = self.stages.evaluate(problem, step)? {
+                return Ok(Solution::NotFinite(stage));
+            }
+            let change = self.stages.iterate(&mut self.systems, &self.jacobian, step, weights);
+            match convergence.judge(change) {
+                Verdict::GoOn => {}
+                Verdict::Converged => return Ok(Solution::Found(convergence)),
+                Verdict::Failed { factor } => return Ok(Solution::Failed(factor, convergence)),
+            }
+        }
+    }
+}
+
+impl<P: Ode + ?Sized> Method<P> for Radau5 {
+    fn order(&self) -> u32 {
+        5
+    }
+
+    fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
+        let (dim, pairs, quadratures) = (problem.dim(), problem.second_order_pairs(), problem.quadratures());
+        if pairs > dim || quadratures > dim || 2 * pairs > dim - quadratures {
+            return Err(SettingsError::Method(
+                "more pairs of positions and rates, and quadratures, than components",
+            ));
+        }
+        if !(0.0..1.0).contains(&self.reuse) {
+            return Err(SettingsError::Method("needed: 0 <= part of reuse < 1"));
+        }
+        let layout = Layout {
+            dim,
+            pairs,
+            active: dim - quadratures,
+        };
+        self.layout = layout;
+        self.stages = Stages::new(layout);
+        let coefficients = &self.stages.coefficients;
+        self.systems = Systems::new(layout, coefficients.real, coefficients.complex);
+        self.polynomial = Polynomial::new(coefficients.c, dim);
+        self.jacobian = vec![0.0; dim * dim];
+        for vector in [&mut self.f_old, &mut self.f_new, &mut self.y, &mut self.jump] {
+            *vector = vec![0.0; dim];
+        }
+        Ok(())
+    }
+
+    fn restart(&mut self, problem: &mut Counted<'_, P>, t: f64, y: &[f64]) -> Result<(), EvalError> {
+        self.known = Known::Nothing;
+        self.polynomial.clear();
+        self.prediction = Prediction::default();
+        (self.left, self.effort, self.attempts, self.shorten) = (1.0, 1.0, 0, None);
+        problem.rhs(t, y, &mut self.f_old)
+    }
+
+    fn attempt(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        weights: &Weights,
+        y_new: &mut [f64],
+        error: &mut [f64],
+    ) -> Result<f64, EvalError> {
+        let first = self.attempts == 0 && self.polynomial.step().is_some();
+        self.attempts += 1;
+        self.shorten = None;
+        error.fill(0.0);
+        let convergence = loop {
+            if self.known == Known::Nothing {
+                self.find_jacobian(problem, step, weights)?;
+            }
+            match self.solve(problem, step, weights)? {
+                Solution::Found(convergence) => break convergence,
+                Solution::NotFinite(stage) => {
+                    // The driver refuses this and names the component.
+                    y_new.copy_from_slice(&self.stages.f[stage]);
+                    return Ok(f64::INFINITY);
+                }
+                // Once more, with what is true here.
+                Solution::Failed(..) if self.known == Known::Earlier => self.known = Known::Nothing,
+                Solution::Failed(_, convergence) if self.fixed.is_some() => {
+                    return Err(EvalError::Retry(Box::new(NotSettled {
+                        iterations: convergence.iterations(),
+                        change: convergence.change(),
+                    })));
+                }
+                Solution::Failed(factor, _) => {
+                    problem.count_divergence();
+                    self.shorten = Some(factor);
+                    y_new.copy_from_slice(step.y);
+                    error.copy_from_slice(self.stages.last_change());
+                    return Ok(2.0);
+                }
+            }
+        };
+        self.left = convergence.left();
+        self.effort = effort(convergence.iterations(), MOST_ITERATIONS);
+        self.outdated = convergence.contraction() > self.reuse || self.reuse == 0.0;
+        self.stages.integrate_quadratures(&self.jacobian, step.h);
+        for ((y_new, y), z) in y_new.iter_mut().zip(step.y).zip(&self.stages.z[2]) {
+            *y_new = y + z;
+        }
+        if self.fixed.is_some() {
+            return Ok(0.0);
+        }
+        let (systems, jacobian) = (&mut self.systems, &self.jacobian);
+        self.stages.estimate(systems, jacobian, step.h, &self.f_old, error);
+        let norm = weights.norm(step.y, y_new, error);
+        if norm < 1.0 || first {
+            return Ok(norm);
+        }
+        // In a transient the estimate may be far too large; once more through the filter it is not.
+        for ((target, y), error) in self.y.iter_mut().zip(step.y).zip(&*error) {
+            *target = y + error;
+        }
+        match problem.rhs(step.t, &self.y, &mut self.f_new) {
+            Ok(()) if self.f_new.iter().all(|f| f.is_finite()) => {}
+            Err(EvalError::Abort(source)) => return Err(EvalError::Abort(source)),
+            _ => return Ok(norm),
+        }
+        self.stages.estimate(systems, jacobian, step.h, &self.f_new, error);
+        Ok(weights.norm(step.y, y_new, error))
+    }
+
+    fn close(
+        &mut self,
+        problem: &mut Counted<'_, P>,
+        step: Step<'_>,
+        y_new: &[f64],
+        projected: bool,
+    ) -> Result<&[f64], EvalError> {
+        self.jump.fill(0.0);
+        if projected {
+            for (i, jump) in self.jump.iter_mut().enumerate() {
+                *jump = y_new[i] - (step.y[i] + self.stages.z[2][i]);
+            }
+        }
+        problem.rhs(step.t + step.h, y_new, &mut self.f_new)?;
+        Ok(&self.f_new)
+    }
+
+    fn accept(&mut self, h: f64) {
+        std::mem::swap(&mut self.f_old, &mut self.f_new);
+        self.polynomial.set(h, &self.stages.z);
+        self.attempts = 0;
+        self.known = if self.outdated { Known::Nothing } else { Known::Earlier };
+    }
+
+    fn derivative(&self) -> &[f64] {
+        &self.f_old
+    }
+
+    fn next_step(&mut self, h: f64, error: f64) -> f64 {
+        if let Some(step) = self.fixed {
+            return step;
+        }
+        if let Some(factor) = self.shorten.take() {
+            return factor * h;
+        }
+        if error > 1.0 {
+            return self.prediction.after_rejected(h, error, self.effort);
+        }
+        self.prediction
+            .after_accepted(h, error, self.effort, self.known == Known::Earlier)
+    }
+
+    fn interpolate(
+        &mut self,
+        _problem: &mut Counted<'_, P>,
+        _step: Step<'_>,
+        y_new: &[f64],
+        theta: f64,
+        y: &mut [f64],
+    ) -> Result<(), EvalError> {
+        y.copy_from_slice(y_new);
+        self.polynomial.add_change(theta, y);
+        // The polynomial ends where the step ended before projection, and begins where the step began.
+        let before = (1.0 - theta) * (1.0 - theta) * (1.0 + 2.0 * theta);
+        y.iter_mut().zip(&self.jump).for_each(|(y, jump)| *y -= before * jump);
+        Ok(())
+    }
+
+    fn fixed_step(&self) -> Option<f64> {
+        self.fixed
+    }
+}

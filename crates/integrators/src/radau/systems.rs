@@ -1,0 +1,213 @@
+//! The linear systems of a step: one real, one complex.
+
+use std::ops::{AddAssign, Mul, Neg};
+
+use num_complex::Complex64;
+
+use crate::linear::{Field, Singular, factorise, solve};
+
+/// How many components of what kind a state has; in this order.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// All components.
+    pub dim: usize,
+    /// Positions; as many rates come next.
+    pub pairs: usize,
+    /// All but the quadratures at the end.
+    pub active: usize,
+}
+
+/// The factors of λ − h J without its positions: J begins with rows (0, 1, 0), so the system
+///
+/// λ x_q − h x_v = r_q, λ x − h J x = r in the other rows
+///
+/// is solved by x_q = (r_q + h x_v) / λ and (λ − h J' − h² A / λ) x = r + h A r_q / λ, where A is what J has in the columns of the
+/// positions (added to those of their rates) and J' the rest of it.
+#[derive(Debug, Clone)]
+struct Reduced<T> {
+    lambda: T,
+    inverse_lambda: T,
+    factors: Vec<T>,
+    pivots: Vec<usize>,
+    x: Vec<T>,
+}
+
+impl<T> Reduced<T>
+where
+    T: Field + From<f64> + AddAssign + Neg<Output = T> + Mul<f64, Output = T>,
+{
+    fn new(lambda: T, size: usize) -> Self {
+        Self {
+            lambda,
+            inverse_lambda: lambda.inverse(),
+            factors: vec![T::from(0.0); size * size],
+            pivots: vec![0; size],
+            x: vec![T::from(0.0); size],
+        }
+    }
+
+    fn factorise(&mut self, Layout { dim, pairs, active }: Layout, jacobian: &[f64], h: f64) -> Result<(), Singular> {
+        let size = active - pairs;
+        let positions = self.inverse_lambda * (h * h);
+        let rows = jacobian[pairs * dim..].chunks_exact(dim.max(1));
+        for (i, (row, target)) in rows.zip(self.factors.chunks_exact_mut(size.max(1))).enumerate() {
+            for (target, &entry) in target.iter_mut().zip(&row[pairs..active]) {
+                *target = T::from(-h * entry);
+            }
+            for (target, &entry) in target.iter_mut().zip(&row[..pairs]) {
+                *target += -(positions * entry);
+            }
+            target[i] += self.lambda;
+        }
+        factorise(&mut self.factors, &mut self.pivots)
+    }
+
+    /// Solves in place; `get` and `set` reach the components of the right-hand side.
+    fn solve<R: ?Sized>(
+        &mut self,
+        Layout { dim, pairs, active }: Layout,
+        (jacobian, h): (&[f64], f64),
+        r: &mut R,
+        get: impl Fn(&R, usize) -> T,
+        set: impl Fn(&mut R, usize, T),
+    ) {
+        for (i, x) in self.x.iter_mut().enumerate() {
+            let mut positions = T::from(0.0);
+            for (j, &entry) in jacobian[(pairs + i) * dim..][..pairs].iter().enumerate() {
+                positions += get(r, j) * entry;
+            }
+            *x = get(r, pairs + i);
+            *x += self.inverse_lambda * positions * h;
+        }
+        solve(&self.factors, &self.pivots, &mut self.x);
+        for j in 0..pairs {
+            let mut sum = get(r, j);
+            sum += self.x[j] * h;
+            set(r, j, self.inverse_lambda * sum);
+        }
+        (pairs..active).for_each(|i| set(r, i, self.x[i - pairs]));
+    }
+}
+
+/// Both systems, for the real and the complex eigenvalue of A⁻¹ (Hairer, Wanner II, IV.8), each with its factors.
+#[derive(Debug, Clone)]
+pub(crate) struct Systems {
+    layout: Layout,
+    real: Reduced<f64>,
+    complex: Reduced<Complex64>,
+    /// The step for which factors exist.
+    h: Option<f64>,
+}
+
+/// The steps may differ by this part of their length and still use the same factors: t + h is rounded. It slows Newton's method no
+/// more than that.
+const SAME_STEP: f64 = 1e-4;
+
+impl Systems {
+    pub(crate) fn new(layout: Layout, real: f64, complex: Complex64) -> Self {
+        let size = layout.active - layout.pairs;
+        Self {
+            layout,
+            real: Reduced::new(real, size),
+            complex: Reduced::new(complex, size),
+            h: None,
+        }
+    }
+
+    /// Whether the factors serve for a step of length `h`.
+    pub(crate) fn fit(&self, h: f64) -> bool {
+        self.h.is_some_and(|own| (h - own).abs() <= SAME_STEP * own.abs())
+    }
+
+    /// Drops the factors: the matrix J has changed.
+    pub(crate) fn clear(&mut self) {
+        self.h = None;
+    }
+
+    /// Factorises two matrices.
+    pub(crate) fn factorise(&mut self, jacobian: &[f64], h: f64) -> Result<(), Singular> {
+        self.h = None;
+        self.real.factorise(self.layout, jacobian, h)?;
+        self.complex.factorise(self.layout, jacobian, h)?;
+        self.h = Some(h);
+        Ok(())
+    }
+
+    /// Solves (γ − h J) x = r in place, with the h and the `jacobian` of the factors.
+    pub(crate) fn solve_real(&mut self, jacobian: &[f64], r: &mut [f64]) {
+        let h = self.h.unwrap_or(0.0);
+        let (get, set) = (|r: &[f64], i: usize| r[i], |r: &mut [f64], i: usize, x: f64| r[i] = x);
+        self.real.solve(self.layout, (jacobian, h), r, get, set);
+    }
+
+    /// Solves (α + iβ − h J) (x + i y) = r + i s in place.
+    pub(crate) fn solve_complex(&mut self, jacobian: &[f64], r: (&mut [f64], &mut [f64])) {
+        let h = self.h.unwrap_or(0.0);
+        let mut r = r;
+        let get = |r: &(&mut [f64], &mut [f64]), i: usize| Complex64::new(r.0[i], r.1[i]);
+        let set = |r: &mut (&mut [f64], &mut [f64]), i: usize, x: Complex64| (r.0[i], r.1[i]) = (x.re, x.im);
+        self.complex.solve(self.layout, (jacobian, h), &mut r, get, set);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(200) })]
+        /// The solutions fulfil the equations of the full matrix, whatever was eliminated.
+        #[test]
+        fn solutions_fulfil_the_full_equations(
+            pairs in 0_usize..4,
+            others in 0_usize..3,
+            quadratures in 0_usize..3,
+            h in prop_oneof![-1.0..1.0, Just(1e-9)],
+            entries in proptest::collection::vec(-1.0..1.0, 100),
+            right in proptest::collection::vec(-1.0..1.0, 20),
+        ) {
+            let active = 2 * pairs + others;
+            let dim = active + quadratures;
+            let layout = Layout { dim, pairs, active };
+            let entry = |i: usize, j: usize| match (i < pairs, j < active) {
+                (true, _) => f64::from(u8::from(j == pairs + i)),
+                (false, true) => entries[i * dim + j],
+                (false, false) => 0.0,
+            };
+            let mut jacobian: Vec<f64> = (0..dim * dim).map(|ij| entry(ij / dim, ij % dim)).collect();
+            let mut systems = Systems::new(layout, 10.0, Complex64::new(10.0, 3.0));
+            // What stands in the rows of the positions is known, and not read.
+            jacobian[..pairs * dim].fill(f64::NAN);
+            systems.factorise(&jacobian, h).unwrap();
+            let (mut x, mut u, mut v) = (right[..active].to_vec(), right[..active].to_vec(), right[10..][..active].to_vec());
+            systems.solve_real(&jacobian, &mut x);
+            systems.solve_complex(&jacobian, (&mut u, &mut v));
+            for i in 0..active {
+                let times = |x: &[f64]| (0..active).map(|j| h * entry(i, j) * x[j]).sum::<f64>();
+                prop_assert!((10.0 * x[i] - times(&x) - right[i]).abs() < 1e-13);
+                prop_assert!((10.0 * u[i] - 3.0 * v[i] - times(&u) - right[i]).abs() < 1e-13);
+                prop_assert!((3.0 * u[i] + 10.0 * v[i] - times(&v) - right[10 + i]).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn factors_serve_for_steps_that_differ_by_rounding() {
+        let layout = Layout {
+            dim: 1,
+            pairs: 0,
+            active: 1,
+        };
+        let mut systems = Systems::new(layout, 1.0, Complex64::new(1.0, 1.0));
+        assert!(!systems.fit(0.1));
+        systems.factorise(&[2.0], 0.1).unwrap();
+        assert!(systems.fit(0.1_f64.next_up()) && !systems.fit(0.11) && !systems.fit(-0.1));
+        // 1 − 0.5 · 2 = 0.
+        assert_eq!(systems.factorise(&[2.0], 0.5), Err(Singular));
+        assert!(!systems.fit(0.1) && !systems.fit(0.5));
+        systems.factorise(&[2.0], 0.1).unwrap();
+        systems.clear();
+        assert!(!systems.fit(0.1));
+    }
+}

@@ -1,0 +1,160 @@
+//! Stiff problems of the test set for IVP solvers (benchmark 05-standard-odes): digits and work.
+
+use linkdyn_integrators::{EvalError, Radau5, Settings, Statistics};
+
+use crate::problems::{Function, solve};
+
+type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), EvalError>;
+
+struct Standard {
+    rhs: Rhs,
+    start: &'static [f64],
+    end: f64,
+    exact: &'static [f64],
+}
+
+/// Eight reactions with light.
+const HIRES: Standard = Standard {
+    rhs: |_, y, dy| {
+        let reaction = 280.0 * y[5] * y[7];
+        dy[0] = -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007;
+        dy[1] = 1.71 * y[0] - 8.75 * y[1];
+        dy[2] = -10.03 * y[2] + 0.43 * y[3] + 0.035 * y[4];
+        dy[3] = 8.32 * y[1] + 1.71 * y[2] - 1.12 * y[3];
+        dy[4] = -1.745 * y[4] + 0.43 * (y[5] + y[6]);
+        dy[5] = -reaction + 0.69 * y[3] + 1.71 * y[4] - 0.43 * y[5] + 0.69 * y[6];
+        dy[6] = reaction - 1.81 * y[6];
+        dy[7] = -dy[6];
+        Ok(())
+    },
+    start: &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0057],
+    end: 321.8122,
+    exact: &[
+        0.0007371312573325668,
+        0.0001442485726316185,
+        5.888729740967575e-05,
+        0.001175651343283149,
+        0.002386356198831331,
+        0.006238968252742796,
+        0.002849998395185769,
+        0.002850001604814231,
+    ],
+};
+
+const VAN_DER_POL: Standard = Standard {
+    rhs: |_, y, dy| {
+        (dy[0], dy[1]) = (y[1], 1000.0 * (1.0 - y[0] * y[0]) * y[1] - y[0]);
+        Ok(())
+    },
+    start: &[2.0, 0.0],
+    end: 2000.0,
+    exact: &[1.706167732170469, -0.0008928097010248125],
+};
+
+const ROBERTSON: Standard = Standard {
+    rhs: |_, y, dy| {
+        (dy[0], dy[2]) = (-0.04 * y[0] + 1e4 * y[1] * y[2], 3e7 * y[1] * y[1]);
+        dy[1] = -dy[0] - dy[2];
+        Ok(())
+    },
+    start: &[1.0, 0.0, 0.0],
+    end: 1e11,
+    exact: &[2.083340149701255e-08, 8.333360770334713e-14, 0.999999979166505],
+};
+
+/// Digits of the worst component at the end, relative to its value.
+fn digits(problem: &Standard, relative: f64, absolute: f64) -> (f64, Statistics) {
+    let settings = Settings {
+        first_step: Some(1e-6),
+        ..Settings::tolerances(relative, absolute)
+    };
+    let (dim, Standard { rhs, start, end, exact }) = (problem.start.len(), problem);
+    let (y, statistics) = solve(Function(dim, rhs), Radau5::default(), start, *end, settings);
+    let digits = |(y, exact): (&f64, &f64)| -((y - exact) / exact).abs().log10();
+    (
+        y.iter().zip(*exact).map(digits).fold(f64::INFINITY, f64::min),
+        statistics,
+    )
+}
+
+/// At each relative tolerance: at least so many digits, at most so many evaluations. Absolute tolerances are smaller by `ratio`.
+fn check(problem: &Standard, ratio: f64, expected: [(f64, f64, u64); 4]) {
+    for (relative, least, most) in expected {
+        let (digits, statistics) = digits(problem, relative, ratio * relative);
+        assert!(digits >= least, "{relative:e}: {digits} digits");
+        assert!(statistics.evaluations <= most, "{relative:e}: {statistics:?}");
+    }
+}
+
+#[test]
+fn hires() {
+    check(
+        &HIRES,
+        1e-2,
+        [
+            (1e-4, 2.0, 790),
+            (1e-7, 7.0, 3050),
+            (1e-10, 11.0, 14200),
+            (1e-12, 12.5, 38000),
+        ],
+    );
+}
+
+#[test]
+fn van_der_pol() {
+    check(
+        &VAN_DER_POL,
+        1.0,
+        [
+            (1e-4, 4.0, 2400),
+            (1e-7, 7.2, 9200),
+            (1e-10, 10.2, 46000),
+            (1e-11, 11.3, 79000),
+        ],
+    );
+}
+
+#[test]
+fn robertson() {
+    check(
+        &ROBERTSON,
+        1e-6,
+        [
+            (1e-4, 3.7, 1700),
+            (1e-7, 8.4, 7500),
+            (1e-10, 11.6, 37500),
+            (1e-11, 12.3, 61000),
+        ],
+    );
+}
+
+/// The steps of the original program, subroutine RADAU5 with the tolerance transformed as there, for van der Pol with ε = 1e-6:
+/// 280 steps, 242 accepted, 2248 evaluations apart from Jacobians, 162 Jacobians, 253 pairs of factorisations.
+#[test]
+fn work_of_the_original() {
+    let rhs: Rhs = |_, y, dy| {
+        (dy[0], dy[1]) = (y[1], ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6);
+        Ok(())
+    };
+    let tolerance = 0.1 * f64::powf(1e-4, 2.0 / 3.0);
+    let settings = Settings {
+        first_step: Some(1e-6),
+        ..Settings::tolerances(tolerance, tolerance)
+    };
+    let (y, found) = solve(Function(2, rhs), Radau5::default(), &[2.0, -0.66], 2.0, settings);
+    // The result of the original differs from the exact one by 5e-6 and 2e-5.
+    assert!(
+        (y[0] - 1.706163).abs() < 2e-5 && (y[1] + 0.892797).abs() < 5e-5,
+        "{y:?}"
+    );
+    let near = |found: u64, original: u64| (0.9..1.1).contains(&(found as f64 / original as f64));
+    assert!(
+        near(found.accepted + found.rejected, 280) && near(found.accepted, 242),
+        "{found:?}"
+    );
+    assert!(near(found.evaluations - found.jacobian_evaluations, 2248), "{found:?}");
+    assert!(
+        near(found.jacobians, 162) && near(found.factorisations, 2 * 253),
+        "{found:?}"
+    );
+}
