@@ -8,7 +8,7 @@ use crate::{Expected, ParameterError};
 /// y = ζ arccos(ζ)/√(1 - ζ²), or ζ arcosh(ζ)/√(ζ² - 1) for ζ > 1, or 1 for ζ = 1:
 ///
 /// ```text
-/// e = exp(-2y),   δ_max = v₀/ω₀ exp(-y)
+/// ε = exp(-2y),   δ_max = v₀/ω₀ exp(-y)
 /// ```
 ///
 /// The contact lasts twice as long as the way to the greatest depth.

@@ -85,10 +85,10 @@ pub trait NormalModel: Debug + Send + Sync {
     /// Greatest depth \[m\] of a free impact of a (reduced) mass \[kg\] at a speed \[m/s\].
     fn greatest_depth(&self, mass: f64, impact_speed: f64) -> f64;
 
-    /// Energy \[J\] lost in a free impact, m v₀² (1 - e²)/2.
+    /// Energy \[J\] lost in a free impact, m v₀² (1 - ε²)/2.
     fn energy_loss(&self, mass: f64, impact_speed: f64) -> f64 {
-        let e = self.delivered_restitution(mass, impact_speed);
-        0.5 * mass * impact_speed * impact_speed * (1.0 - e) * (1.0 + e)
+        let eps = self.delivered_restitution(mass, impact_speed);
+        0.5 * mass * impact_speed * impact_speed * (1.0 - eps) * (1.0 + eps)
     }
 
     /// Refuses parameters for which [`at`](Self::at) has no meaning.
@@ -105,7 +105,7 @@ pub trait NormalModel: Debug + Send + Sync {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum ContactLaw {
-    /// K δⁿ (1 + χ δ'/v₀) and its relatives.
+    /// K δⁿ (1 + ξ δ'/v₀) and its relatives.
     Family(NormalLaw),
     /// A linear spring and damper.
     KelvinVoigt(KelvinVoigt),

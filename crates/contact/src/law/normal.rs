@@ -6,31 +6,31 @@ use crate::{Expected, ParameterError, impact};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
 pub enum Damping {
-    /// Not at all: Hertz's law, χ = 0.
+    /// Not at all: Hertz's law, ξ = 0.
     Hertz,
-    /// χ by a wanted restitution.
+    /// ξ by a wanted restitution.
     Restitution {
         /// The formula.
         law: RestitutionLaw,
-        /// Wanted restitution 0 ≤ e ≤ 1 \[-\]; zero is refused by some laws.
+        /// Wanted restitution 0 ≤ ε ≤ 1 \[-\]; zero is refused by some laws.
         restitution: f64,
     },
     /// F = K δⁿ (1 + 3/2 α δ'), the material form of Hunt and Crossley 1975: no memory of the impact speed, and
-    /// e ≈ 1 - α v₀ at low speed. The choice for long or grazing contacts.
+    /// ε ≈ 1 - α v₀ at low speed. The choice for long or grazing contacts.
     Material {
         /// α ≥ 0 \[s/m\].
         constant: f64,
     },
 }
 
-/// Normal force F = K δⁿ (1 + χ δ'/v₀), where v₀ is the speed at which the contact began.
+/// Normal force F = K δⁿ (1 + ξ δ'/v₀), where v₀ is the speed at which the contact began.
 ///
 /// * The force never pulls: it is zero where the bracket is negative. In a free impact that never happens, because
-///   1 - χ e > 0; it needs another force that tears the bodies apart faster than v₀/χ.
+///   1 - ξ ε > 0; it needs another force that tears the bodies apart faster than v₀/ξ.
 /// * v₀ has a floor, [`least_impact_speed`](Self::least_impact_speed), so that the damping of a contact that begins at
-///   rest or by grazing stays finite. Below it an impact is damped less than at the floor, towards e = 1. The default,
+///   rest or by grazing stays finite. Below it an impact is damped less than at the floor, towards ε = 1. The default,
 ///   1e-6 m/s, only keeps the division harmless: a contact that begins so slowly and is then driven at 0.1 m/s meets a
-///   damping of 1e5 χ times its elastic force. Where that matters take 1e-3 to 1e-2 of the typical impact speed, or
+///   damping of 1e5 ξ times its elastic force. Where that matters take 1e-3 to 1e-2 of the typical impact speed, or
 ///   [`Damping::Material`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -40,7 +40,7 @@ pub struct NormalLaw {
     exponent: f64,
     damping: Damping,
     least_impact_speed: f64,
-    /// χ, or 3/2 α of the material form.
+    /// ξ, or 3/2 α of the material form.
     factor: f64,
 }
 
@@ -104,7 +104,7 @@ impl NormalLaw {
         self.least_impact_speed
     }
 
-    /// χ \[-\] of an impact at this speed \[m/s\]: the law's number for speeds above the floor, in proportion to the
+    /// ξ \[-\] of an impact at this speed \[m/s\]: the law's number for speeds above the floor, in proportion to the
     /// speed below it and for [`Damping::Material`].
     pub fn damping_factor(&self, impact_speed: f64) -> f64 {
         match self.damping {
@@ -120,7 +120,7 @@ impl NormalLaw {
         impact::restitution(self.damping_factor(impact_speed))
     }
 
-    /// χ/v₀ \[s/m\].
+    /// ξ/v₀ \[s/m\].
     #[inline]
     fn per_rate(&self, impact_speed: f64) -> f64 {
         match self.damping {
@@ -171,7 +171,7 @@ impl NormalModel for NormalLaw {
         self.delivered_restitution(impact_speed)
     }
 
-    /// `((n + 1) m v₀² φ(χ)/(χ² K))^(1/(n+1))`, see [`impact`].
+    /// `((n + 1) m v₀² L(ξ)/(ξ² K))^(1/(n+1))`, see [`impact`].
     fn greatest_depth(&self, mass: f64, impact_speed: f64) -> f64 {
         let share = impact::depth_factor(self.damping_factor(impact_speed));
         let n1 = self.exponent + 1.0;

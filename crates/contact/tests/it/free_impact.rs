@@ -71,13 +71,13 @@ proptest! {
     #[test]
     fn restitution_depth_and_loss_of_real_impacts(law in law(), mass in 0.01..10.0f64, speed in 0.01..5.0f64) {
         let seen = impact(&law, mass, speed, 1500);
-        let chi = law.damping_factor(speed);
+        let xi = law.damping_factor(speed);
         let e = law.delivered_restitution(speed);
         prop_assert!((seen.restitution - e).abs() < 2e-7, "{seen:?} {e}");
         // The relation itself, with the restitution seen.
-        if chi > 0.05 {
+        if xi > 0.05 {
             let e = seen.restitution;
-            prop_assert!(close(chi * (1.0 + e), ((1.0 + chi) / (1.0 - chi * e)).ln(), 1e-3), "{chi} {e}");
+            prop_assert!(close(xi * (1.0 + e), ((1.0 + xi) / (1.0 - xi * e)).ln(), 1e-3), "{xi} {e}");
         }
         prop_assert!(near(seen.greatest_depth, law.greatest_depth(mass, speed), 1e-6), "{seen:?}");
         let energy = 0.5 * mass * speed * speed;
@@ -87,26 +87,26 @@ proptest! {
 
     #[test]
     fn restitution_and_damping_factor_are_inverse(e in 1e-3..0.9999f64) {
-        let chi = impact::damping_factor(e);
-        prop_assert!((impact::restitution(chi) - e).abs() < 1e-14);
-        prop_assert!(chi > 0.0 && chi < 1.0 / e + 1e-9);
+        let xi = impact::damping_factor(e);
+        prop_assert!((impact::restitution(xi) - e).abs() < 1e-14);
+        prop_assert!(xi > 0.0 && xi < 1.0 / e + 1e-9);
     }
 
     #[test]
-    fn relation_holds_to_rounding(chi in 1e-6..20.0f64) {
-        let e = impact::restitution(chi);
+    fn relation_holds_to_rounding(xi in 1e-6..20.0f64) {
+        let e = impact::restitution(xi);
         prop_assert!(e > 0.0 && e < 1.0);
-        // Where 1 - χ e still has digits.
-        if chi < 8.0 {
-            let right = chi.ln_1p() - (-chi * e).ln_1p();
-            prop_assert!((chi * (1.0 + e) - right).abs() < 1e-15 / (1.0 - chi * e) + 1e-14, "{chi} {e}");
+        // Where 1 - ξ e still has digits.
+        if xi < 8.0 {
+            let right = xi.ln_1p() - (-xi * e).ln_1p();
+            prop_assert!((xi * (1.0 + e) - right).abs() < 1e-15 / (1.0 - xi * e) + 1e-14, "{xi} {e}");
         }
     }
 
     #[test]
-    fn small_damping_loses_two_thirds_of_it(chi in 1e-12..1e-5f64) {
-        // χ (1 + e) = ln((1 + χ)/(1 - χ e)) to second order: 1 - e = 2χ/3.
-        prop_assert!(((1.0 - impact::restitution(chi)) / chi - 2.0 / 3.0).abs() < 1e-15 / chi + chi);
+    fn small_damping_loses_two_thirds_of_it(xi in 1e-12..1e-5f64) {
+        // ξ (1 + e) = ln((1 + ξ)/(1 - ξ e)) to second order: 1 - e = 2ξ/3.
+        prop_assert!(((1.0 - impact::restitution(xi)) / xi - 2.0 / 3.0).abs() < 1e-15 / xi + xi);
     }
 }
 

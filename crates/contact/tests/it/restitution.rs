@@ -53,14 +53,14 @@ fn delivered_restitution_to_eight_digits() {
 
 #[test]
 fn exact_damping_factors() {
-    for (e, chi) in [
+    for (e, xi) in [
         (0.1, 9.9982),
         (0.3, 3.0871),
         (0.5, 1.4328),
         (0.7, 0.6348),
         (0.9, 0.1665),
     ] {
-        assert!((Exact.damping_factor(e).unwrap() - chi).abs() <= 5.001e-5, "{e}");
+        assert!((Exact.damping_factor(e).unwrap() - xi).abs() <= 5.001e-5, "{e}");
     }
 }
 
