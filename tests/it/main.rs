@@ -3,6 +3,7 @@
 mod architecture;
 mod assembly;
 mod baumgarte;
+mod clearance_contact;
 mod closed_form_loops;
 mod closures;
 mod cut_or_carried;
