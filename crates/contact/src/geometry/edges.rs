@@ -48,7 +48,7 @@ struct Edge {
 }
 
 impl Edge {
-    /// The two edges at -L/2 and +L/2 along the bearing's axis (Flores, Ambrósio, Claro, Lankarani 2006).
+    /// The two edges at +L/2 and -L/2 along the bearing's axis (Flores, Ambrósio, Claro, Lankarani 2006).
     fn both(length: f64, bearing: &Centre, journal: &Centre) -> Result<[Self; 2], Skewed> {
         let cos = bearing.axis.dot(&journal.axis);
         if cos.is_nan() || cos.abs() < 0.5 {
@@ -58,7 +58,7 @@ impl Edge {
         }
         let (a, da) = (bearing.axis, bearing.axis_rate());
         let (u, du) = (journal.axis, journal.axis_rate());
-        Ok([-0.5 * length, 0.5 * length].map(|along| {
+        Ok([0.5 * length, -0.5 * length].map(|along| {
             let (p, dp) = (bearing.point + a * along, bearing.velocity + da * along);
             // q = r_j + s u with a·(q - p) = 0.
             let s = a.dot(&(p - journal.point)) / cos;
@@ -103,7 +103,7 @@ impl Edge {
 }
 
 impl Fit {
-    /// Gaps c - |e| \[m\] at the two edges of a bearing of some length \[m\], at `-length/2` and `+length/2` along its
+    /// Gaps c - |e| \[m\] at the two edges of a bearing of some length \[m\], at `+length/2` and `-length/2` along its
     /// axis from its point. The journal's axis is met with the edge planes, which are normal to the **bearing's** axis.
     ///
     /// The section of an inclined journal is taken for a circle; it is an ellipse, longer by about R_j tilt²/2.
@@ -125,6 +125,10 @@ impl Fit {
     /// The spatial joint: two contacts independent of each other, each as in [`planar`](Self::planar) but with the
     /// bearing's axis. Together they make the four cases of [`Pattern`]. With half the stiffness each, contact along a
     /// line is as stiff as the planar joint.
+    ///
+    /// The normals are normal to the bearing's axis. Against a tilted journal they are not quite those of its surface,
+    /// so that the power of the normal force is -f_n δ' only up to f_n times tilt times the axial speed: take
+    /// [`ContactForce::power`](crate::ContactForce::power) for balances.
     ///
     /// # Errors
     /// As [`edge_gaps`](Self::edge_gaps).

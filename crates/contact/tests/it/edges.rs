@@ -45,8 +45,8 @@ fn journals_pressed_at_one_edge_are_pushed_back_there() {
     let touches = rsup_fit()
         .edges(LENGTH, &bearing(), &through([0.0, 0.0], [1.01e-3, 0.0]))
         .unwrap();
-    assert_eq!(touches[0], None);
-    let upper = touches[1].unwrap();
+    assert_eq!(touches[1], None);
+    let upper = touches[0].unwrap();
     assert!((upper.depth - 1e-5).abs() < 1e-15);
     assert!((upper.bearing_point - Vector3::new(0.005, 0.0, 0.01)).norm() < 1e-15);
     assert!((upper.journal_point - Vector3::new(0.005_01, 0.0, 0.01)).norm() < 1e-15);
@@ -54,7 +54,7 @@ fn journals_pressed_at_one_edge_are_pushed_back_there() {
     let gaps = rsup_fit()
         .edge_gaps(LENGTH, &bearing(), &through([0.0, 0.0], [1.01e-3, 0.0]))
         .unwrap();
-    assert!((gaps[0] - 1e-3).abs() < 1e-15 && (gaps[1] + 1e-5).abs() < 1e-15);
+    assert!((gaps[1] - 1e-3).abs() < 1e-15 && (gaps[0] + 1e-5).abs() < 1e-15);
 }
 
 #[test]
@@ -105,6 +105,21 @@ proptest! {
                 prop_assert!(close(touch.rate, -seen, 1e-6));
                 prop_assert!((touch.depth + gap(k, 0.0)).abs() < 1e-15);
             }
+        }
+    }
+
+    #[test]
+    fn power_of_the_normal_force_misses_the_rate_by_tilt_times_axial_speed((bearing, journal) in pair(rsup_fit(), 0.05)) {
+        let (b, j) = (bearing.at(0.0), journal.at(0.0));
+        for touch in rsup_fit().edges(LENGTH, &b, &j).unwrap().into_iter().flatten() {
+            let power = touch.force(1.0, [0.0; 2], ForcePoint::OwnSurface).power(&b, &j);
+            // The speed of the journal's axis through the edge plane, and how far its axis leans towards the normal.
+            let lean = j.axis.dot(&touch.normal) / j.axis.dot(&touch.axis);
+            let centre = touch.journal_point + touch.normal * rsup_fit().journal_radius();
+            let edge = touch.bearing_point + touch.normal * rsup_fit().bearing_radius();
+            let through = (b.velocity_at(&edge) - j.velocity_at(&centre)).dot(&touch.axis)
+                + b.spin.cross(&touch.axis).dot(&(edge - centre));
+            prop_assert!(close(power, -touch.rate - lean * through, 1e-10), "{power} {}", touch.rate);
         }
     }
 
