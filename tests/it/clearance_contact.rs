@@ -137,8 +137,10 @@ fn planar_contact_follows_from_the_states_of_an_independent_solution() {
     assert!(touching > 15, "{touching}");
 }
 
-/// `kept` gives the direction of the one kept equation and the point of its line, from bearing and journal.
-fn check_edges(file: &str, kept: fn(&Centre, &Centre) -> (Vector3<f64>, Vector3<f64>)) {
+/// Direction of the one kept equation and the point of its line, from bearing and journal.
+type Kept = fn(&Centre, &Centre) -> (Vector3<f64>, Vector3<f64>);
+
+fn check_edges(file: &str, kept: Kept) {
     let (fit, law, bristle) = (fit(), law(), bristle());
     let mut touching = [0, 0];
     for row in rows(file) {
