@@ -114,7 +114,8 @@ pub trait Method<P: ?Sized> {
         error: &mut [f64],
     ) -> Result<f64, EvalError>;
 
-    /// Completes the last attempt, whose error is small enough: returns f(t + h, y_new).
+    /// Completes the last attempt, whose error is small enough: returns f(t + h, y_new), or the derivative of what an implicit method
+    /// takes for the solution if that is as accurate.
     ///
     /// `y_new` is the state of the attempt, `projected` tells whether it has been changed since.
     ///
@@ -131,7 +132,7 @@ pub trait Method<P: ?Sized> {
     /// Takes the closed attempt, of signed length `h`, as the step made.
     fn accept(&mut self, h: f64);
 
-    /// f at the state reached.
+    /// f at the state reached, as [`close`](Method::close) returned it, or exactly after [`restart`](Method::restart).
     fn derivative(&self) -> &[f64];
 
     /// Length of the next step, positive, after a step of length `h` > 0 had this norm of error (above 1: it was rejected).

@@ -19,6 +19,8 @@ pub(crate) struct Coefficients {
     pub real: f64,
     /// α + i β, the eigenvalue above the real axis.
     pub complex: Complex64,
+    /// Last row of A⁻¹: h times the derivative of the collocation polynomial at the end of the step is Σ rᵢ zᵢ.
+    pub rate: [f64; 3],
     /// eᵢ: h f(t, y) + Σ eᵢ zᵢ is γ times the difference to a formula of order 3.
     pub e: [f64; 3],
 }
@@ -56,6 +58,7 @@ impl Coefficients {
             t_inverse: inverse(&t),
             real,
             complex,
+            rate: inverse(&a)[2],
             e: [(-13.0 - 7.0 * root) / 3.0, (-13.0 + 7.0 * root) / 3.0, -1.0 / 3.0],
         }
     }
@@ -164,6 +167,18 @@ mod tests {
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
             close(t[i][j], published[i][j]);
         }
+    }
+
+    /// The derivative at the end is right for degree 3.
+    #[test]
+    fn rate_at_the_end() {
+        let Coefficients { c, rate, .. } = Coefficients::new();
+        (1..=3).for_each(|k| {
+            close(
+                (0..3).map(|i| rate[i] * power(c[i], k)).sum::<f64>() / 10.0,
+                k as f64 / 10.0,
+            )
+        });
     }
 
     /// The estimate vanishes for solutions of degree 3 and not of degree 4.

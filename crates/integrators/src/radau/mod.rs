@@ -18,28 +18,34 @@ use systems::{Layout, Systems};
 /// Implicit, L-stable. The equations of a step are solved by simplified Newton iterations, each of which costs 3 evaluations, one
 /// real and one complex system of equations; df/dy and the factors serve for as many steps as they can. If the problem
 /// [tells](Ode::second_order_pairs) that it begins with positions and their rates, these systems are as small as the number of rates.
-/// One more evaluation closes a step.
+/// The derivative at the end of a step is that of the collocation polynomial, so that no further evaluation is needed there.
 ///
 /// The error is estimated by a formula of order 3 while the solution is of order 5, so it is mostly far smaller than the
-/// tolerance: near tolerance^1.25. Interpolation is by the collocation polynomial, at no cost; its error is of the order of the
-/// estimate. Newton's iteration does not see components whose tolerance is infinite: this is meant for
+/// tolerance: near tolerance^1.25. (The subroutine RADAU5 of the book takes 0.1 tolerance^(2/3) for the tolerance it is given.)
+/// Interpolation is by the collocation polynomial, at no cost; its error is of the order of the estimate, but larger where stiff
+/// components follow slow ones in steps whose length nothing else limits. Newton's iteration does not see components whose tolerance is infinite: this is meant for
 /// [quadratures](Ode::quadratures), which are integrated after it.
 #[derive(Debug, Clone)]
 pub struct Radau5 {
     /// Length of fixed steps.
     fixed: Option<f64>,
-    /// df/dy is kept as long as Newton's changes shrink to this part.
-    reuse: f64,
+    /// df/dy is kept as long as Newton's changes shrink to this part; by default as long as it pays.
+    reuse: Option<f64>,
     layout: Layout,
     stages: Stages,
     systems: Systems,
     polynomial: Polynomial,
     jacobian: Vec<f64>,
     known: Known,
+    /// Evaluations that df/dy has cost, iterations of the step it was found for, and the iterations above these of all steps since.
+    evaluations: usize,
+    usual: u32,
+    excess: u32,
     /// Newton's iteration converges so slowly that the next step shall have a new df/dy.
     outdated: bool,
-    /// f at the start of the step and at its end.
+    /// f at the start of the step and at its end; whether the former is f itself, not the derivative of a polynomial.
     f_old: Vec<f64>,
+    f_is_exact: bool,
     f_new: Vec<f64>,
     y: Vec<f64>,
     /// What projection has added to the end of the step last closed.
@@ -73,8 +79,14 @@ enum Solution {
     NotFinite(usize),
 }
 
-/// The contraction up to which df/dy is kept: that of subroutine RADAU5.
-const REUSE: f64 = 0.001;
+/// Where changes shrink to this part or less (the limit of subroutine RADAU5), df/dy is as good as a new one.
+const FAST: f64 = 0.001;
+
+/// Where they shrink more slowly than this, divergence is near.
+const SLOW: f64 = 0.1;
+
+/// Iterations that a step with a new df/dy is taken to need at first.
+const USUAL: u32 = 2;
 
 /// Most iterations of an adaptive step (subroutine RADAU5), and of a fixed one, which cannot be shortened.
 const MOST_ITERATIONS: u32 = 7;
@@ -91,15 +103,19 @@ impl Default for Radau5 {
         );
         Self {
             fixed: None,
-            reuse: REUSE,
+            reuse: None,
             layout,
             stages,
             systems: Systems::new(layout, real, complex),
             polynomial: Polynomial::new(nodes, 0),
             jacobian: Vec::new(),
             known: Known::Nothing,
+            evaluations: 0,
+            usual: USUAL,
+            excess: 0,
             outdated: false,
             f_old: Vec::new(),
+            f_is_exact: false,
             f_new: Vec::new(),
             y: Vec::new(),
             jump: Vec::new(),
@@ -124,11 +140,14 @@ impl Radau5 {
         }
     }
 
-    /// Keeps df/dy from step to step as long as the changes in Newton's iteration shrink to this part or less, 0 ≤ part < 1: 0.001 by
-    /// default; 0 finds it anew for each step. More saves Jacobian matrices and costs iterations.
+    /// Keeps df/dy from step to step as long as the changes in Newton's iteration shrink to this part or less, 0 ≤ part < 1; 0 finds
+    /// it anew for each step. The book recommends 0.001 where a matrix costs little, up to 0.1 where it costs much.
+    ///
+    /// By default the method keeps it until the iterations which it has needed in excess of those with a new matrix have cost as
+    /// many evaluations as that matrix; one that the problem gives counts for nothing.
     #[must_use]
     pub fn with_reuse(mut self, part: f64) -> Self {
-        self.reuse = part;
+        self.reuse = Some(part);
         self
     }
 
@@ -141,7 +160,13 @@ impl Radau5 {
     ) -> Result<(), EvalError> {
         self.known = Known::Nothing;
         self.systems.clear();
+        self.evaluations = 0;
         if !problem.jacobian(t, y, &mut self.jacobian)? {
+            self.evaluations = self.layout.active;
+            if !self.f_is_exact && self.layout.active > 0 {
+                problem.rhs_for_jacobian(t, y, &mut self.f_old)?;
+                self.f_is_exact = true;
+            }
             let [scratch, ..] = &mut self.stages.f;
             let scratch = [&mut self.y[..], scratch];
             let (active, matrix) = (self.layout.active, &mut self.jacobian);
@@ -151,6 +176,26 @@ impl Radau5 {
         Ok(())
     }
 
+    /// Whether the next step shall have a new df/dy.
+    fn is_outdated(&mut self, convergence: &Convergence) -> bool {
+        let iterations = convergence.iterations();
+        let new = self.known == Known::Here;
+        // Rising by steps of one: a matrix found in a difficult place does not count for much.
+        self.usual = iterations.min(self.usual + u32::from(new));
+        self.excess = if new {
+            0
+        } else {
+            self.excess + (iterations - self.usual)
+        };
+        match self.reuse {
+            Some(part) => convergence.contraction() > part || part == 0.0,
+            None => {
+                let paid = 3 * self.excess as usize > self.evaluations;
+                convergence.contraction() > if paid { FAST } else { SLOW }
+            }
+        }
+    }
+
     /// Newton's iteration for one step.
     fn solve<P: Ode + ?Sized>(
         &mut self,
@@ -158,9 +203,9 @@ impl Radau5 {
         step: Step<'_>,
         weights: &Weights,
     ) -> Result<Solution, EvalError> {
-        // As in subroutine RADAU5: rounding limits what a relative tolerance may ask for.
+        // As in subroutine RADAU5, which stops at ten times this rounding; with an old df/dy the changes are a rougher measure.
         let relative = weights.least_relative();
-        let rounding = 10.0 * f64::EPSILON / relative;
+        let rounding = f64::EPSILON / relative;
         let mut convergence = match self.fixed {
             None => Convergence::new(
                 MOST_ITERATIONS,
@@ -204,7 +249,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
                 "more pairs of positions and rates, and quadratures, than components",
             ));
         }
-        if !(0.0..1.0).contains(&self.reuse) {
+        if self.reuse.is_some_and(|part| !(0.0..1.0).contains(&part)) {
             return Err(SettingsError::Method("needed: 0 <= part of reuse < 1"));
         }
         let layout = Layout {
@@ -229,6 +274,8 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
         self.polynomial.clear();
         self.prediction = Prediction::default();
         (self.left, self.effort, self.attempts, self.shorten) = (1.0, 1.0, 0, None);
+        (self.usual, self.excess) = (USUAL, 0);
+        self.f_is_exact = true;
         problem.rhs(t, y, &mut self.f_old)
     }
 
@@ -255,8 +302,10 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
                     y_new.copy_from_slice(&self.stages.f[stage]);
                     return Ok(f64::INFINITY);
                 }
-                // Once more, with what is true here.
-                Solution::Failed(..) if self.known == Known::Earlier => self.known = Known::Nothing,
+                // A fixed step: once more, with what is true here.
+                Solution::Failed(..) if self.fixed.is_some() && self.known == Known::Earlier => {
+                    self.known = Known::Nothing;
+                }
                 Solution::Failed(_, convergence) if self.fixed.is_some() => {
                     return Err(EvalError::Retry(Box::new(NotSettled {
                         iterations: convergence.iterations(),
@@ -265,6 +314,9 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
                 }
                 Solution::Failed(factor, _) => {
                     problem.count_divergence();
+                    if self.known == Known::Earlier {
+                        self.known = Known::Nothing;
+                    }
                     self.shorten = Some(factor);
                     y_new.copy_from_slice(step.y);
                     error.copy_from_slice(self.stages.last_change());
@@ -274,7 +326,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
         };
         self.left = convergence.left();
         self.effort = effort(convergence.iterations(), MOST_ITERATIONS);
-        self.outdated = convergence.contraction() > self.reuse || self.reuse == 0.0;
+        self.outdated = self.is_outdated(&convergence);
         self.stages.integrate_quadratures(&self.jacobian, step.h);
         for ((y_new, y), z) in y_new.iter_mut().zip(step.y).zip(&self.stages.z[2]) {
             *y_new = y + z;
@@ -303,7 +355,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
 
     fn close(
         &mut self,
-        problem: &mut Counted<'_, P>,
+        _problem: &mut Counted<'_, P>,
         step: Step<'_>,
         y_new: &[f64],
         projected: bool,
@@ -314,12 +366,13 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
                 *jump = y_new[i] - (step.y[i] + self.stages.z[2][i]);
             }
         }
-        problem.rhs(step.t + step.h, y_new, &mut self.f_new)?;
+        self.stages.rate_at_end(step.h, &mut self.f_new);
         Ok(&self.f_new)
     }
 
     fn accept(&mut self, h: f64) {
         std::mem::swap(&mut self.f_old, &mut self.f_new);
+        self.f_is_exact = false;
         self.polynomial.set(h, &self.stages.z);
         self.attempts = 0;
         self.known = if self.outdated { Known::Nothing } else { Known::Earlier };

@@ -140,6 +140,15 @@ impl Stages {
         }
     }
 
+    /// Writes the derivative of the collocation polynomial at the end of the step. There it is f, but for what Newton's iteration has
+    /// left: of f itself a stiff problem would make something large.
+    pub(crate) fn rate_at_end(&self, h: f64, f: &mut [f64]) {
+        let r = &self.coefficients.rate;
+        for (i, f) in f.iter_mut().enumerate() {
+            *f = (r[0] * self.z[0][i] + r[1] * self.z[1][i] + r[2] * self.z[2][i]) / h;
+        }
+    }
+
     /// The last change of w that belongs to the end of the step.
     pub(crate) fn last_change(&self) -> &[f64] {
         &self.change[2]

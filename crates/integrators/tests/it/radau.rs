@@ -188,9 +188,11 @@ fn structure_changes_nothing_but_the_work() {
         let (y, told) = chain(pairs, quadratures, &settings, Radau5::fixed(0.002));
         let distance = relative_distance(&y, &plain);
         assert!(distance < 1e-11, "{pairs} {quadratures}: {distance:e}");
-        assert_eq!(told.jacobian_evaluations, told.jacobians * (9 - quadratures as u64));
+        let columns = 9 - quadratures as u64;
+        let expected = columns * told.jacobians..(columns + 1) * told.jacobians;
+        assert!(expected.contains(&told.jacobian_evaluations), "{told:?}");
     }
-    assert_eq!(all.jacobian_evaluations, 9 * all.jacobians);
+    assert!(all.jacobian_evaluations >= 9 * all.jacobians);
     let settings = Settings::tolerances(1e-8, 1e-8);
     let (plain, all) = chain(0, 0, &settings, Radau5::default());
     let (y, told) = chain(3, 2, &settings, Radau5::default());
@@ -252,7 +254,7 @@ fn a_given_jacobian() {
     let (y, given) = solve(Given(1.0), Radau5::default(), &Kink::START, 1.5, settings.clone());
     let (y_differences, differences) = solve(Kink, Radau5::default(), &Kink::START, 1.5, settings.clone());
     assert_eq!(given.jacobian_evaluations, 0);
-    assert_eq!(differences.jacobian_evaluations, 3 * differences.jacobians);
+    assert_eq!(differences.jacobian_evaluations, 4 * differences.jacobians - 1);
     assert_eq!(given.accepted, differences.accepted);
     assert!(distance(&y, &y_differences) < 1e-11 && distance(&y, &Kink::exact(1.5)) < 1e-9);
     // A wrong one costs work, not digits.
@@ -264,12 +266,15 @@ fn a_given_jacobian() {
 #[test]
 fn reuse_trades_matrices_for_iterations() {
     let settings = Settings::tolerances(1e-8, 1e-8);
-    let never = chain(3, 2, &settings, Radau5::default().with_reuse(0.0)).1;
-    let usual = chain(3, 2, &settings, Radau5::default()).1;
-    let often = chain(3, 2, &settings, Radau5::default().with_reuse(0.2)).1;
+    let run = |part: f64| chain(3, 2, &settings, Radau5::default().with_reuse(part)).1;
+    let (never, little, often) = (run(0.0), run(0.001), run(0.2));
     assert!(never.jacobians >= never.accepted);
-    assert!(usual.jacobians < never.jacobians && often.jacobians < usual.jacobians);
+    assert!(little.jacobians < never.jacobians && 2 * often.jacobians < little.jacobians);
     assert!(often.iterations > never.iterations);
+    // By default about what costs least.
+    let usual = chain(3, 2, &settings, Radau5::default()).1.evaluations;
+    let least = [never, little, often].map(|s| s.evaluations).into_iter().min();
+    assert!(least.is_some_and(|least| 20 * usual < 21 * least), "{usual} {least:?}");
 }
 
 #[test]
@@ -283,11 +288,15 @@ fn counters() {
     finish(&mut run, 3.0);
     let s = run.statistics();
     assert_eq!(s.evaluations, problem.evaluations);
-    assert_eq!(s.jacobian_evaluations, 28 * s.jacobians);
+    // One for each column, and one for f itself unless it is known, as at the start.
+    assert!(
+        (28 * s.jacobians..29 * s.jacobians).contains(&s.jacobian_evaluations),
+        "{s:?}"
+    );
     assert_eq!(s.dense_evaluations, 0);
-    // The start, three for each iteration, one to close a step; the estimate is filtered twice at most once in a refused step,
-    // in the first, or in one after a refusal.
-    let rest = s.evaluations - s.jacobian_evaluations - (1 + 3 * s.iterations + s.accepted);
+    // The start, three for each iteration, fewer where one fails; the estimate is filtered twice only in a refused step, in the
+    // first, or in one after a refusal.
+    let rest = s.evaluations - s.jacobian_evaluations - (1 + 3 * s.iterations);
     assert!(rest <= 1 + 2 * s.rejected, "{s:?}");
     assert!(s.factorisations % 2 == 0 && s.factorisations >= 2 * s.jacobians && s.divergences <= s.rejected);
 }
@@ -314,10 +323,9 @@ fn differences_keep_to_the_domain() {
     };
     let (y, statistics) = solve(edge(0.0), Radau5::default(), &[1.0, 1.0], 1.0, settings());
     assert!((y[0] - f64::exp(-1.0)).abs() < 1e-6 && y[1] == 1.0);
-    assert_eq!(
-        (statistics.retries, statistics.jacobian_evaluations),
-        (0, 3 * statistics.jacobians)
-    );
+    // Two tries for the second column; f itself is known at the start.
+    let expected = 4 * statistics.jacobians - 1;
+    assert_eq!((statistics.retries, statistics.jacobian_evaluations), (0, expected));
     let mut run = Integration::new(edge(1.0), Radau5::default(), 0.0, &[1.0, 1.0], settings()).expect("good settings");
     let error = run.advance(1.0).expect_err("no direction is left");
     let IntegrationError::StepTooSmall {
