@@ -159,8 +159,9 @@ fn work_of_the_original() {
         "{found:?}"
     );
     assert!(near(found.iterations, 668), "{found:?}");
+    // Steps that shrink a little keep their factors here.
     assert!(
-        near(found.jacobians, 162) && near(found.factorisations, 2 * 253),
+        near(found.jacobians, 162) && found.factorisations < 2 * 253,
         "{found:?}"
     );
 }
