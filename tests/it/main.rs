@@ -10,6 +10,7 @@ mod cut_or_carried;
 mod denavit_hartenberg;
 mod derivatives;
 mod energy;
+mod implicit;
 mod invariances;
 mod linkage_refusals;
 mod newton_euler;

@@ -276,6 +276,15 @@ impl Ode for Simulation {
         }
         Ok(drift.changed)
     }
+
+    /// Work and integrals.
+    fn quadratures(&self) -> usize {
+        self.layout.work.len() + self.layout.integrals.len()
+    }
+
+    fn second_order_pairs(&self) -> usize {
+        self.pairs()
+    }
 }
 
 impl SecondOrder for Simulation {
