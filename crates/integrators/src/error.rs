@@ -39,6 +39,34 @@ pub enum IntegrationError {
         /// Attempts made.
         steps: u64,
     },
+    /// A root function is not finite, however short the step.
+    #[error("at t = {time}: root function {function} is not finite")]
+    NonFiniteRoot {
+        /// Time reached.
+        time: f64,
+        /// Index of the function.
+        function: usize,
+    },
+    /// `max_events` are used up.
+    #[error("at t = {time}: {events} events met, no more allowed")]
+    TooManyEvents {
+        /// Time reached, that of the next event.
+        time: f64,
+        /// Events met.
+        events: u64,
+    },
+    /// So many events lie so close together that time does not go on: they accumulate, as those of a ball that bounces ever lower.
+    #[error(
+        "at t = {time}: {events} events at one time, root function {function} among the last; do they accumulate here?"
+    )]
+    EventsAccumulate {
+        /// Time reached.
+        time: f64,
+        /// Events closer together than the spacing of numbers near t allows to tell.
+        events: u64,
+        /// Index of a function that met zero last.
+        function: usize,
+    },
     /// The problem gave up, or a method of fixed step met a state that it cannot evaluate.
     #[error("at t = {time}: {source}")]
     Problem {

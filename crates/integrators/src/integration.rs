@@ -1,6 +1,9 @@
 //! The driver: one loop for all methods.
 
+mod events;
+
 use crate::control::first_step;
+use crate::event::{Events, Since};
 use crate::lanes::{LANES, Lanes};
 use crate::settings::check_step;
 use crate::{Counted, EvalError, IntegrationError, Method, Ode, Settings, SettingsError, Statistics, Step, Weights};
@@ -18,6 +21,11 @@ pub enum Progress {
         /// Time reached, exactly that of the stop.
         t: f64,
     },
+    /// A [root function](Ode::root) met zero, and the problem has [changed](Ode::at_event) the state.
+    Event {
+        /// Time reached, that of the event.
+        t: f64,
+    },
     /// The end that was asked for.
     Done {
         /// Time reached, exactly that asked for.
@@ -28,6 +36,19 @@ pub enum Progress {
 /// A running integration of a problem by a method.
 ///
 /// The steps never depend on where the state is [interpolated](Integration::interpolate), so output may be as dense as one likes.
+///
+/// # Events
+/// If the problem has [root functions](Ode::root), each step is searched for the first place where one of them, having been
+/// positive, becomes zero or negative. The step is then made again with the length that leads there, so that the state at the
+/// event is as good as that of any step and on the invariants, not merely interpolated; what time is left, some 1e-7 of the step
+/// at most, is passed along the tangent until the root is met to rounding. [`Ode::at_event`] changes the state, the method forgets
+/// all earlier steps and chooses a new first step, not longer than the one before. Times of events never decrease, and they are
+/// equal only for events that follow from each other at one time.
+///
+/// Values and slopes of a root function at both ends of a step show a change of sign and also a dip, a touch shorter than the
+/// step. Missed is what the cubic polynomial through them does not show: two dips in one step, or one much narrower than it.
+/// A function that touches zero without becoming negative fires
+/// or not, as rounding has it. A longest step (`max_step`) helps where that matters.
 #[derive(Debug)]
 pub struct Integration<P, M> {
     problem: P,
@@ -36,6 +57,7 @@ pub struct Integration<P, M> {
     first_step: Option<f64>,
     max_step: f64,
     max_steps: u64,
+    max_events: u64,
     stops: Vec<f64>,
     statistics: Statistics,
     t: f64,
@@ -50,12 +72,25 @@ pub struct Integration<P, M> {
     h: Option<f64>,
     direction: f64,
     restart_due: bool,
+    events: Events,
+}
+
+/// What was found in an attempt that seemed to hold an event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Found {
+    /// At the state reached: the attempt has been undone.
+    Here,
+    /// At this time: the attempt has been made again and ends there.
+    At(f64),
+    /// None after all: the attempt has been made again and ends at this time.
+    Nothing(f64),
 }
 
 /// Why an attempt was thrown away.
 enum Refusal {
     Inaccurate { error: f64 },
     NonFinite { component: usize },
+    NonFiniteRoot { function: usize },
     Evaluation(EvalError),
 }
 
@@ -81,12 +116,14 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         }
         method.prepare(&problem)?;
         Ok(Self {
+            events: Events::new(problem.roots(), dim),
             problem,
             first_step: method.fixed_step().or(settings.first_step),
             method,
             weights: Weights::new(&relative, &absolute),
             max_step: settings.max_step,
             max_steps: settings.max_steps,
+            max_events: settings.max_events,
             stops: Vec::new(),
             statistics: Statistics::default(),
             t: t0,
@@ -104,7 +141,8 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
     /// Adds times on which a step must end exactly: kinks or jumps of the right-hand side, which no step should cross.
     ///
     /// There the method forgets earlier steps, f is evaluated anew at the next [`advance`](Integration::advance) (so that a problem
-    /// with a jump can be switched in between), and methods that need it choose a new first step.
+    /// with a jump can be switched in between), and methods that need it choose a new first step. An event at the time of a stop
+    /// is reported first, the stop by the next call.
     ///
     /// # Errors
     /// [`SettingsError::NotFinite`].
@@ -119,7 +157,8 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
 
     /// Makes one accepted step toward `until`, which is reached exactly; forward or backward in time.
     ///
-    /// `until` is where the integration is to end, not a grid of output: the last step is cut to reach it.
+    /// `until` is where the integration is to end, not a grid of output: the last step is cut to reach it. An event ends the step
+    /// earlier; an event at the time of `until` is reported first, the end by the next call.
     /// After an error the state is that of the last accepted step.
     ///
     /// # Errors
@@ -135,16 +174,24 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         if until == self.t {
             return Ok(Progress::Done { t: self.t });
         }
+        if std::mem::take(&mut self.events.stop_pending) {
+            return Ok(Progress::Stop { t: self.t });
+        }
         self.turn_toward(until);
         let goal = self.next_stop(until).unwrap_or(until);
         self.restart_if_due(goal)?;
+        if self.fires_at_once(goal)? {
+            return self.meet(Found::Here, goal, until);
+        }
         let wanted = self.h.unwrap_or(f64::INFINITY);
         let mut refusal = None;
         loop {
             let (h, t_new) = self.cut(goal);
             self.count_attempt()?;
-            match self.attempt(h, t_new) {
-                Ok(error) => {
+            let attempt = self.attempt(h, t_new);
+            match attempt.and_then(|error| Ok((error, self.event_in(h, t_new)?))) {
+                Ok((_, Some(found))) => return self.meet(found, goal, until),
+                Ok((error, None)) => {
                     self.statistics.accepted += 1;
                     self.choose_next_step(h, error, refusal.is_some(), if t_new == goal { wanted } else { 0.0 });
                     return Ok(self.arrive(t_new, goal, until));
@@ -168,7 +215,8 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         (self.t_old, self.t)
     }
 
-    /// Writes the state at a time within the last step.
+    /// Writes the state at a time within the last step. If that led to an event, it is the state before the event changed it, up to
+    /// the time of the event; [`state`](Integration::state) is the one after.
     ///
     /// Methods that need further evaluations for this make them once, at the first call in a step. The result is not
     /// projected; [`Ode::project`] does that for whoever needs it.
@@ -183,22 +231,26 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         if !(from.min(to) <= t && t <= from.max(to)) {
             return Err(IntegrationError::OutsideStep { time: t, from, to });
         }
+        let (reached, t_end, y_end) = match &self.events {
+            events if events.at_event => (&events.y_before, events.t_end, &events.y_end),
+            _ => (&self.y, to, &self.y),
+        };
         if t == to {
-            y.copy_from_slice(&self.y);
+            y.copy_from_slice(reached);
             return Ok(());
         }
         if t == from {
             y.copy_from_slice(&self.y_old);
             return Ok(());
         }
-        let h = to - from;
+        let h = t_end - from;
         let step = Step {
             t: from,
             h,
             y: &self.y_old,
         };
         let mut problem = Counted::new(&mut self.problem, &mut self.statistics);
-        let done = self.method.interpolate(&mut problem, step, &self.y, (t - from) / h, y);
+        let done = self.method.interpolate(&mut problem, step, y_end, (t - from) / h, y);
         done.map_err(|error| fatal(t, error))?;
         match first_non_finite(y) {
             Some(component) => Err(IntegrationError::NonFinite {
@@ -219,7 +271,13 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);
         self.restart_due = true;
+        self.events.start();
         Ok(())
+    }
+
+    /// Which [root functions](Ode::root) met zero, if the last step led to an event; all `false` otherwise.
+    pub fn fired(&self) -> &[bool] {
+        &self.events.fired
     }
 
     /// What the run has cost so far.
@@ -267,7 +325,8 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
                 component,
             });
         }
-        if self.h.is_none() || self.method.is_multistep() {
+        let after_event = self.events.since == Since::Event;
+        if self.h.is_none() || self.method.is_multistep() || after_event {
             let limit = (goal - t).abs().min(self.max_step);
             let scratch = [&mut self.y_new[..], &mut self.error[..]];
             let h = match self.first_step {
@@ -282,9 +341,11 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
                 )
                 .map_err(|error| fatal(t, error))?,
             };
-            self.h = Some(h.min(self.max_step));
+            let longest = self.h.filter(|_| after_event).unwrap_or(f64::INFINITY);
+            self.h = Some(h.min(self.max_step).min(longest));
         }
         self.restart_due = false;
+        self.events.restart();
         Ok(())
     }
 
@@ -299,29 +360,41 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
             .filter(|stop| (until - stop) * self.direction > 0.0 || *stop == until)
     }
 
+    fn is_stop(&self, t: f64) -> bool {
+        self.stops.binary_search_by(|stop| stop.total_cmp(&t)).is_ok()
+    }
+
     /// Signed length and end of the next attempt: the wanted step, cut or stretched by at most 1 % to end on `goal`; a fixed or longest
     /// step by 1e-9 only, so that rounding of t does not leave a splinter.
     fn cut(&self, goal: f64) -> (f64, f64) {
         let wanted = self.h.unwrap_or(f64::INFINITY);
         let longest = self.method.fixed_step().unwrap_or(f64::INFINITY).min(self.max_step);
-        let left = goal - self.t;
-        if left.abs() <= (1.01 * wanted).min((1.0 + 1e-9) * longest) {
-            // Rounded so that t + h is not beyond the goal, where f may be another.
-            let beyond = (self.t + left - goal) * self.direction > 0.0;
-            let h = if beyond {
-                left - self.direction * (left.abs() - left.abs().next_down())
-            } else {
-                left
-            };
-            (h, goal)
+        if (goal - self.t).abs() <= (1.01 * wanted).min((1.0 + 1e-9) * longest) {
+            (self.length_to(goal), goal)
         } else {
             let t_new = self.t + self.direction * wanted;
             (t_new - self.t, t_new)
         }
     }
 
+    /// Signed length of a step to `t_new`, rounded so that t + h is not beyond, where f may be another.
+    fn length_to(&self, t_new: f64) -> f64 {
+        let left = t_new - self.t;
+        if (self.t + left - t_new) * self.direction > 0.0 {
+            left - self.direction * (left.abs() - left.abs().next_down())
+        } else {
+            left
+        }
+    }
+
     fn count_attempt(&self) -> Result<(), IntegrationError> {
-        let steps = self.statistics.accepted + self.statistics.rejected;
+        let Statistics {
+            accepted,
+            rejected,
+            relocations,
+            ..
+        } = self.statistics;
+        let steps = accepted + rejected + relocations;
         if steps >= self.max_steps {
             return Err(IntegrationError::TooManySteps { time: self.t, steps });
         }
@@ -405,6 +478,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
                 source: Some(source),
             },
             Refusal::NonFinite { component } => IntegrationError::NonFinite { time, step, component },
+            Refusal::NonFiniteRoot { function } => IntegrationError::NonFiniteRoot { time, function },
             Refusal::Inaccurate { .. } => {
                 let component = self.weights.worst(&self.y, &self.y_new, &self.error);
                 IntegrationError::StepTooSmall {
@@ -417,6 +491,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         };
         self.t_old = self.t;
         self.restart_due = true;
+        self.events.at_event = false;
         Err(error)
     }
 
@@ -425,9 +500,10 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         self.t_old = std::mem::replace(&mut self.t, t_new);
         std::mem::swap(&mut self.y_old, &mut self.y);
         std::mem::swap(&mut self.y, &mut self.y_new);
+        self.events.step();
         let t = t_new;
         if t == goal {
-            self.restart_due = self.stops.binary_search_by(|stop| stop.total_cmp(&goal)).is_ok();
+            self.restart_due = self.is_stop(goal);
         }
         match t {
             t if t == until => Progress::Done { t },

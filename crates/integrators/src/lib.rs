@@ -3,6 +3,7 @@
 mod adams;
 mod control;
 mod error;
+mod event;
 mod hermite;
 mod integration;
 mod jacobian;
@@ -12,6 +13,7 @@ mod method;
 mod newmark;
 mod problem;
 mod radau;
+mod root;
 mod runge_kutta;
 mod settings;
 mod statistics;

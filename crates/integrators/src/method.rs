@@ -63,6 +63,12 @@ impl<'a, P: Ode + ?Sized> Counted<'a, P> {
         self.statistics.factorisations += matrices;
     }
 
+    /// Evaluates and counts the root functions.
+    pub(crate) fn root(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        self.statistics.root_evaluations += 1;
+        self.problem.root(t, y, g)
+    }
+
     /// Counts one corrector iteration.
     pub fn count_iteration(&mut self) {
         self.statistics.iterations += 1;
@@ -84,7 +90,8 @@ pub struct Step<'a> {
 ///
 /// Order of the calls: `prepare` once; `restart`; then for each step `attempt`, repeated with smaller `h` until its error is at
 /// most 1; the driver projects the new state, calls `close` and, if the derivative is finite, `accept`; after that any number
-/// of `interpolate`. Until `accept` the method must be able to attempt the same step again.
+/// of `interpolate`. Until `accept` the method must be able to attempt the same step again, and after it, once `retreat` has been
+/// called: so a step is cut short at an event that interpolation has shown.
 pub trait Method<P: ?Sized> {
     /// Order of the solution p: the error of a run is O(hᵖ).
     fn order(&self) -> u32;
@@ -132,6 +139,10 @@ pub trait Method<P: ?Sized> {
     /// Takes the closed attempt, of signed length `h`, as the step made.
     fn accept(&mut self, h: f64);
 
+    /// Undoes the last `accept`, interpolations in between notwithstanding: the same step can be attempted again, with the length
+    /// that the driver likes.
+    fn retreat(&mut self);
+
     /// f at the state reached, as [`close`](Method::close) returned it, or exactly after [`restart`](Method::restart).
     fn derivative(&self) -> &[f64];
 
@@ -150,6 +161,11 @@ pub trait Method<P: ?Sized> {
         theta: f64,
         y: &mut [f64],
     ) -> Result<(), EvalError>;
+
+    /// Evaluations of f that the first interpolation in a step costs.
+    fn interpolation_evaluations(&self) -> u32 {
+        0
+    }
 
     /// The step of a method of fixed step; its steps are accepted whatever their error.
     fn fixed_step(&self) -> Option<f64> {
@@ -195,6 +211,9 @@ impl<P: Ode + ?Sized> Method<P> for Box<dyn Method<P> + '_> {
     fn accept(&mut self, h: f64) {
         (**self).accept(h);
     }
+    fn retreat(&mut self) {
+        (**self).retreat();
+    }
     fn derivative(&self) -> &[f64] {
         (**self).derivative()
     }
@@ -210,6 +229,9 @@ impl<P: Ode + ?Sized> Method<P> for Box<dyn Method<P> + '_> {
         y: &mut [f64],
     ) -> Result<(), EvalError> {
         (**self).interpolate(problem, step, y_new, theta, y)
+    }
+    fn interpolation_evaluations(&self) -> u32 {
+        (**self).interpolation_evaluations()
     }
     fn fixed_step(&self) -> Option<f64> {
         (**self).fixed_step()

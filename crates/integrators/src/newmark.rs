@@ -189,6 +189,10 @@ impl<P: SecondOrder + ?Sized> Method<P> for Newmark {
         self.moved_on = true;
     }
 
+    fn retreat(&mut self) {
+        self.moved_on = false;
+    }
+
     fn derivative(&self) -> &[f64] {
         if self.moved_on { &self.f_new } else { &self.f_old }
     }

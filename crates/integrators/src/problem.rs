@@ -61,6 +61,40 @@ pub trait Ode {
     fn second_order_pairs(&self) -> usize {
         0
     }
+
+    /// The number of root functions; it must not change during a run. By default there are none.
+    fn roots(&self) -> usize {
+        0
+    }
+
+    /// Writes the root functions at (t, y) into all of `g`: an [event](Ode::at_event) is where one of them, having been positive,
+    /// becomes zero or negative in the direction of the integration.
+    ///
+    /// They should be as smooth as f within a step, and cheap: two calls in every step, some twenty at an event. After a start,
+    /// a stop or an event they are asked for up to 1e-4 of a step ahead.
+    ///
+    /// # Errors
+    /// As for [`rhs`](Ode::rhs).
+    fn root(&mut self, _t: f64, _y: &[f64], _g: &mut [f64]) -> Result<(), EvalError> {
+        Ok(())
+    }
+
+    /// Changes the state at an event: `fired` tells which root functions met zero. `y` is on the invariants of the problem and
+    /// must be left there.
+    ///
+    /// The problem may change itself too: f and the root functions may be others afterwards. (Numbers that events alone change
+    /// are well kept as components of y whose derivatives are zero: states interpolated before the event then hold what was
+    /// true there.)
+    ///
+    /// A function that fired may fire again once it has been positive; so it may after an event at which it turned round, from
+    /// falling to rising or to rest. A function that is negative after the event without having been so before fires at once:
+    /// there is then another event at the same time.
+    ///
+    /// # Errors
+    /// Any error ends the integration.
+    fn at_event(&mut self, _t: f64, _y: &mut [f64], _fired: &[bool]) -> Result<(), EvalError> {
+        Ok(())
+    }
 }
 
 /// A problem whose state begins with positions and their rates.
@@ -91,6 +125,15 @@ impl<P: Ode + ?Sized> Ode for &mut P {
     fn second_order_pairs(&self) -> usize {
         (**self).second_order_pairs()
     }
+    fn roots(&self) -> usize {
+        (**self).roots()
+    }
+    fn root(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        (**self).root(t, y, g)
+    }
+    fn at_event(&mut self, t: f64, y: &mut [f64], fired: &[bool]) -> Result<(), EvalError> {
+        (**self).at_event(t, y, fired)
+    }
 }
 
 impl<P: SecondOrder + ?Sized> SecondOrder for &mut P {
@@ -117,6 +160,15 @@ impl<P: Ode + ?Sized> Ode for Box<P> {
     }
     fn second_order_pairs(&self) -> usize {
         (**self).second_order_pairs()
+    }
+    fn roots(&self) -> usize {
+        (**self).roots()
+    }
+    fn root(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        (**self).root(t, y, g)
+    }
+    fn at_event(&mut self, t: f64, y: &mut [f64], fired: &[bool]) -> Result<(), EvalError> {
+        (**self).at_event(t, y, fired)
     }
 }
 

@@ -69,10 +69,12 @@ pub struct Settings {
     pub max_step: f64,
     /// Most steps to attempt over the whole run, ≥ 1.
     pub max_steps: u64,
+    /// Most events over the whole run.
+    pub max_events: u64,
 }
 
 impl Default for Settings {
-    /// Relative 1e-6, absolute 1e-9, no limit on the step, ten million steps.
+    /// Relative 1e-6, absolute 1e-9, no limit on the step, ten million steps, a million events.
     fn default() -> Self {
         Self::tolerances(1e-6, 1e-9)
     }
@@ -87,6 +89,7 @@ impl Settings {
             first_step: None,
             max_step: f64::INFINITY,
             max_steps: 10_000_000,
+            max_events: 1_000_000,
         }
     }
 

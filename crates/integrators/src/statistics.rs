@@ -1,6 +1,6 @@
 //! What a run has cost.
 
-/// Counters of a run. Attempted steps = `accepted` + `rejected`.
+/// Counters of a run. Attempted steps = `accepted` + `rejected` + `relocations`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Statistics {
@@ -28,4 +28,8 @@ pub struct Statistics {
     pub factorisations: u64,
     /// Events located.
     pub events: u64,
+    /// Calls of [`Ode::root`](crate::Ode::root).
+    pub root_evaluations: u64,
+    /// Steps tried, found to hold an event and thrown away, to be made again with the length that leads to it.
+    pub relocations: u64,
 }

@@ -39,6 +39,8 @@ pub struct Adams {
     depth: usize,
     /// Order and step still rise with every step.
     starting: bool,
+    /// `depth`, `starting` and `past` as they were before the last step.
+    before: (usize, bool, Past),
     /// Attempts refused since the last step.
     failures: u32,
     past: Past,
@@ -83,6 +85,7 @@ impl Default for Adams {
             next_k: 1,
             depth: 1,
             starting: true,
+            before: (1, true, Past::default()),
             failures: 0,
             past: Past::default(),
             coefficients: Coefficients::default(),
@@ -302,12 +305,20 @@ impl<P: Ode + ?Sized> Method<P> for Adams {
     }
 
     fn accept(&mut self, h: f64) {
+        self.before = (self.depth, self.starting, self.past.clone());
         self.depth = (self.depth + 1).min(self.k + 2).min(DEPTH);
         let mean_square = self.update();
         self.past.step(h, &self.coefficients, self.depth);
         self.failures = 0;
         self.defect_ready = false;
         (self.next_k, self.next_square) = self.choose_order(h, mean_square);
+    }
+
+    fn retreat(&mut self) {
+        (self.depth, self.starting, self.past) = self.before.clone();
+        self.next_k = self.k;
+        std::mem::swap(&mut self.f, &mut self.f_new);
+        std::mem::swap(&mut self.blocks, &mut self.blocks_new);
     }
 
     fn derivative(&self) -> &[f64] {

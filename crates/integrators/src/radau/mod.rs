@@ -41,6 +41,10 @@ pub struct Radau5 {
     evaluations: usize,
     usual: u32,
     excess: u32,
+    /// What was known in the step accepted last, and whether its f was exact.
+    before: (Known, bool),
+    /// The polynomial is that of the very step that is attempted.
+    again: bool,
     /// Newton's iteration converges so slowly that the next step shall have a new df/dy.
     outdated: bool,
     /// f at the start of the step and at its end; whether the former is f itself, not the derivative of a polynomial.
@@ -113,6 +117,8 @@ impl Default for Radau5 {
             evaluations: 0,
             usual: USUAL,
             excess: 0,
+            before: (Known::Nothing, false),
+            again: false,
             outdated: false,
             f_old: Vec::new(),
             f_is_exact: false,
@@ -221,7 +227,8 @@ impl Radau5 {
                 return Ok(Solution::Failed(0.5, convergence));
             }
         }
-        self.stages.predict(step.h, &self.polynomial);
+        let start = if self.again { 0.0 } else { 1.0 };
+        self.stages.predict(step.h, &self.polynomial, start);
         loop {
             problem.count_iteration();
             if let Some(stage) = self.stages.evaluate(problem, step)? {
@@ -271,6 +278,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
 
     fn restart(&mut self, problem: &mut Counted<'_, P>, t: f64, y: &[f64]) -> Result<(), EvalError> {
         self.known = Known::Nothing;
+        self.again = false;
         self.polynomial.clear();
         self.prediction = Prediction::default();
         (self.left, self.effort, self.attempts, self.shorten) = (1.0, 1.0, 0, None);
@@ -372,10 +380,17 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
 
     fn accept(&mut self, h: f64) {
         std::mem::swap(&mut self.f_old, &mut self.f_new);
+        self.before = (self.known, self.f_is_exact);
         self.f_is_exact = false;
         self.polynomial.set(h, &self.stages.z);
-        self.attempts = 0;
+        (self.attempts, self.again) = (0, false);
         self.known = if self.outdated { Known::Nothing } else { Known::Earlier };
+    }
+
+    fn retreat(&mut self) {
+        std::mem::swap(&mut self.f_old, &mut self.f_new);
+        (self.known, self.f_is_exact) = self.before;
+        (self.attempts, self.again) = (1, true);
     }
 
     fn derivative(&self) -> &[f64] {

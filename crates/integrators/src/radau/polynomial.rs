@@ -42,6 +42,14 @@ impl Polynomial {
         self.h
     }
 
+    /// Adds to `y` the change between two places.
+    pub(crate) fn add_change_between(&self, from: f64, to: f64, y: &mut [f64]) {
+        y.iter_mut().for_each(|y| *y = -*y);
+        self.add_change(from, y);
+        y.iter_mut().for_each(|y| *y = -*y);
+        self.add_change(to, y);
+    }
+
     /// Adds to `y` the change from the end of the step to `theta`; 1 is the end, more lies beyond.
     pub(crate) fn add_change(&self, theta: f64, y: &mut [f64]) {
         let [c1, c2, _] = self.nodes;
@@ -73,6 +81,10 @@ mod tests {
                     (y - expected).abs() < 1e-13 * (1.0 + expected.abs()),
                     "{theta}: {y} {expected}"
                 );
+            }
+            polynomial.add_change_between(theta, 0.2, &mut y);
+            for (y, expected) in y.iter().zip(cubic(0.2)) {
+                assert!((y - expected).abs() < 1e-12 * (1.0 + cubic(theta)[0].abs()));
             }
         }
         polynomial.clear();

@@ -35,12 +35,12 @@ impl Stages {
         }
     }
 
-    /// Starts from the polynomial of the step before, or from no change at all.
-    pub(crate) fn predict(&mut self, h: f64, before: &Polynomial) {
+    /// Starts from a polynomial, whose place `start` is the start of this step, or from no change at all.
+    pub(crate) fn predict(&mut self, h: f64, before: &Polynomial, start: f64) {
         for (z, c) in self.z.iter_mut().zip(self.coefficients.c) {
             z.fill(0.0);
             if let Some(h_before) = before.step() {
-                before.add_change(1.0 + c * h / h_before, z);
+                before.add_change_between(start, start + c * h / h_before, z);
             }
             z[self.layout.active..].fill(0.0);
         }

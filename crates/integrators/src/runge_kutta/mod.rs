@@ -241,6 +241,10 @@ impl<P: Ode + ?Sized, T: Tableau> Method<P> for RungeKutta<T> {
         self.dense_ready = false;
     }
 
+    fn retreat(&mut self) {
+        self.moved_on = false;
+    }
+
     fn derivative(&self) -> &[f64] {
         &self.stages[self.range(self.current())]
     }
@@ -274,6 +278,10 @@ impl<P: Ode + ?Sized, T: Tableau> Method<P> for RungeKutta<T> {
         }
         y.iter_mut().zip(step.y).for_each(|(y, start)| *y += start);
         Ok(())
+    }
+
+    fn interpolation_evaluations(&self) -> u32 {
+        T::COEFFICIENTS.dense_rows.len() as u32
     }
 
     fn fixed_step(&self) -> Option<f64> {

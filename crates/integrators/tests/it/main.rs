@@ -4,6 +4,7 @@ mod any_numbers;
 mod benchmark_05_standard_odes;
 mod convergence;
 mod counters;
+mod events;
 mod failures;
 mod output;
 mod problems;

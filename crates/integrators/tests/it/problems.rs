@@ -167,6 +167,11 @@ pub struct Counting<P> {
     pub problem: P,
     pub evaluations: u64,
     pub projections: u64,
+    pub root_evaluations: u64,
+    pub events: u64,
+    /// Root functions, none or two: the first component above `level`, and below it.
+    pub roots: usize,
+    pub level: f64,
     /// Whether `project` claims to have changed the state.
     pub claim: bool,
 }
@@ -177,6 +182,10 @@ impl<P> Counting<P> {
             problem,
             evaluations: 0,
             projections: 0,
+            root_evaluations: 0,
+            events: 0,
+            roots: 0,
+            level: 0.0,
             claim: false,
         }
     }
@@ -194,6 +203,18 @@ impl<P: Ode> Ode for Counting<P> {
         self.projections += 1;
         self.problem.project(t, y)?;
         Ok(self.claim)
+    }
+    fn roots(&self) -> usize {
+        self.roots
+    }
+    fn root(&mut self, _t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        self.root_evaluations += 1;
+        (g[0], g[1]) = (y[0] - self.level, self.level - y[0]);
+        Ok(())
+    }
+    fn at_event(&mut self, _t: f64, _y: &mut [f64], _fired: &[bool]) -> Result<(), EvalError> {
+        self.events += 1;
+        Ok(())
     }
 }
 

@@ -35,7 +35,7 @@ fn stops_are_hit_exactly() {
         let mut seen = Vec::new();
         loop {
             match run.advance(3.0).expect("smooth between stops") {
-                Progress::Step { .. } => {}
+                Progress::Step { .. } | Progress::Event { .. } => {}
                 Progress::Stop { t } => seen.push(t),
                 Progress::Done { t } => {
                     seen.push(t);
@@ -114,7 +114,7 @@ fn stops_of_all_kinds() {
                 let (from, to) = (seen.last().copied().unwrap_or(start), expected[seen.len()]);
                 run.problem_mut().bounds = [f64::min(from, to), f64::max(from, to)];
                 match run.advance(end).expect("smooth") {
-                    Progress::Step { .. } => {}
+                    Progress::Step { .. } | Progress::Event { .. } => {}
                     Progress::Stop { t } => {
                         assert!(t != end);
                         seen.push(t);
@@ -220,7 +220,7 @@ fn a_problem_switched_at_a_stop() {
         loop {
             match run.advance(2.0).expect("constant") {
                 Progress::Stop { .. } => run.problem_mut().0 = -3.0,
-                Progress::Step { .. } => {}
+                Progress::Step { .. } | Progress::Event { .. } => {}
                 Progress::Done { .. } => break,
             }
         }
