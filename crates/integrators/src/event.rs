@@ -175,6 +175,12 @@ impl Events {
         times.min_by(|a, b| (direction * a).total_cmp(&(direction * b)))
     }
 
+    /// Whether a function that may fire is no longer positive at the end of the attempt.
+    pub(crate) fn any_passed(&self, function: usize) -> bool {
+        let mut all = self.trial.values.iter().enumerate();
+        all.any(|(k, value)| *value <= 0.0 && (self.armed[k] || k == function))
+    }
+
     /// Marks the armed functions that fall through zero at the end of the attempt, or where it began: of those that were looked
     /// for, `wanted` at least.
     pub(crate) fn mark(&mut self, at_start: bool, wanted: usize, direction: f64, resolution: f64) {

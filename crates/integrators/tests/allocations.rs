@@ -20,14 +20,43 @@ impl Ode for Pendulum {
     }
 }
 
+/// The pendulum, with events wherever it is lowest.
+struct Struck;
+
+impl Ode for Struck {
+    fn dim(&self) -> usize {
+        Pendulum.dim()
+    }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        Pendulum.rhs(t, y, dy)
+    }
+    fn roots(&self) -> usize {
+        2
+    }
+    fn root(&mut self, _t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
+        (g[0], g[1]) = (y[0], -y[0]);
+        Ok(())
+    }
+    fn at_event(&mut self, _t: f64, y: &mut [f64], _fired: &[bool]) -> Result<(), EvalError> {
+        y[1] *= 1.01;
+        Ok(())
+    }
+}
+
+impl SecondOrder for Struck {
+    fn pairs(&self) -> usize {
+        1
+    }
+}
+
 impl SecondOrder for Pendulum {
     fn pairs(&self) -> usize {
         1
     }
 }
 
-fn allocations<M: Method<Pendulum>>(method: M) -> u64 {
-    let run = Integration::new(Pendulum, method, 0.0, &[1.0, 0.0], Settings::default()).expect("good settings");
+fn allocations<P: Ode, M: Method<P>>(problem: P, method: M) -> u64 {
+    let run = Integration::new(problem, method, 0.0, &[1.0, 0.0], Settings::default()).expect("good settings");
     let mut run = run.with_stops(&[3.0]).expect("finite");
     run.advance(100.0).expect("smooth");
     let mut y = [0.0; 2];
@@ -47,11 +76,23 @@ fn no_step_allocates() {
         allocation_counter::measure(|| drop(std::hint::black_box(vec![0_u8; 10]))).count_total > 0,
         "the counter counts"
     );
-    assert_eq!(allocations(Rk4::new(0.01)), 0);
-    assert_eq!(allocations(Newmark::new(0.01, Corrector::Times(2))), 0);
-    assert_eq!(allocations(DormandPrince5::default()), 0);
-    assert_eq!(allocations(Dop853::default()), 0);
-    assert_eq!(allocations(Adams::default()), 0);
-    assert_eq!(allocations(Radau5::default()), 0);
-    assert_eq!(allocations(Radau5::fixed(0.01)), 0);
+    assert_eq!(allocations(Pendulum, Rk4::new(0.01)), 0);
+    assert_eq!(allocations(Pendulum, Newmark::new(0.01, Corrector::Times(2))), 0);
+    assert_eq!(allocations(Pendulum, DormandPrince5::default()), 0);
+    assert_eq!(allocations(Pendulum, Dop853::default()), 0);
+    assert_eq!(allocations(Pendulum, Adams::default()), 0);
+    assert_eq!(allocations(Pendulum, Radau5::default()), 0);
+    assert_eq!(allocations(Pendulum, Radau5::fixed(0.01)), 0);
+}
+
+/// Nor do events.
+#[test]
+fn no_event_allocates() {
+    assert_eq!(allocations(Struck, Rk4::new(0.01)), 0);
+    assert_eq!(allocations(Struck, Newmark::new(0.01, Corrector::Times(2))), 0);
+    assert_eq!(allocations(Struck, DormandPrince5::default()), 0);
+    assert_eq!(allocations(Struck, Dop853::default()), 0);
+    assert_eq!(allocations(Struck, Adams::default()), 0);
+    assert_eq!(allocations(Struck, Radau5::default()), 0);
+    assert_eq!(allocations(Struck, Radau5::fixed(0.01)), 0);
 }

@@ -133,6 +133,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         let (mut reached, mut step) = (t_new, h);
         // Ends before the root and beyond it.
         let (mut before, mut beyond) = (self.t, None);
+        let mut met = false;
         for _ in 0..MOST_REDONE {
             if (aim - t_new) * self.direction > 0.0 {
                 aim = t_new;
@@ -151,7 +152,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
             let approach = self.approach(step, reached, t_new, function);
             let rest = match approach.inspect_err(|_| self.method.retreat())? {
                 Approach::Met(t) => {
-                    reached = t;
+                    (reached, met) = (t, true);
                     break;
                 }
                 Approach::Missed(rest) => rest,
@@ -184,6 +185,9 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
                 }
                 break;
             }
+        }
+        if !met && !self.events.any_passed(function) {
+            return Ok(Found::Nothing(reached));
         }
         self.events.mark(false, function, self.direction, resolution);
         self.prepare_interpolation(step)

@@ -44,9 +44,11 @@ impl Polynomial {
 
     /// Adds to `y` the change between two places.
     pub(crate) fn add_change_between(&self, from: f64, to: f64, y: &mut [f64]) {
-        y.iter_mut().for_each(|y| *y = -*y);
-        self.add_change(from, y);
-        y.iter_mut().for_each(|y| *y = -*y);
+        if from != 1.0 {
+            y.iter_mut().for_each(|y| *y = -*y);
+            self.add_change(from, y);
+            y.iter_mut().for_each(|y| *y = -*y);
+        }
         self.add_change(to, y);
     }
 

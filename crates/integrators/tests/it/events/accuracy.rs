@@ -37,6 +37,7 @@ fn a_bouncing_ball() {
     check(ball(0.5), DormandPrince5::default());
     check(ball(0.5), Dop853::default());
     check(ball(0.5), Adams::default());
+    check(ball(0.5), Radau5::default());
 }
 
 /// x'' = −sin x between walls: reflected at x = −½, and the rate is halved where x = 0 is passed upward. Both the time of the last
@@ -108,6 +109,7 @@ fn tolerances() {
     check(exact, reflected(), DormandPrince5::default());
     check(exact, reflected(), Dop853::default());
     check(exact, reflected(), Adams::default());
+    check(exact, reflected(), Radau5::default());
 }
 
 /// A pendulum let go at 2 rad: quarter of the period is π / 2 / agm(1, cos 1).
@@ -143,6 +145,7 @@ fn a_pendulum_through_its_lowest_point() {
     check(pendulum(), Dop853::default(), quarter, 1e-12);
     check(pendulum(), DormandPrince5::default(), quarter, 1e-11);
     check(pendulum(), Adams::default(), quarter, 1e-11);
+    check(pendulum(), Radau5::default(), quarter, 1e-11);
     check(pendulum(), Rk4::new(0.001), quarter, 1e-11);
 }
 
@@ -176,6 +179,7 @@ fn a_zigzag_is_exact() {
     check(zigzag(), DormandPrince5::default());
     check(zigzag(), Dop853::default());
     check(zigzag(), Adams::default());
+    check(zigzag(), Radau5::default());
 }
 
 proptest! {
@@ -187,7 +191,7 @@ proptest! {
         levels in proptest::collection::vec(-0.95..0.95_f64, 1..4),
         phase in -3.0..3.0_f64,
         backward: bool,
-        which in 0..4_usize,
+        which in 0..5_usize,
     ) {
         let direction = if backward { -1.0 } else { 1.0 };
         let (roots, tau) = (2 * levels.len(), std::f64::consts::TAU);
@@ -222,6 +226,7 @@ proptest! {
             0 => run(problem, DormandPrince5::default(), &y0, end),
             1 => run(problem, Dop853::default(), &y0, end),
             2 => run(problem, Adams::default(), &y0, end),
+            3 => run(problem, Radau5::default(), &y0, end),
             _ => run(problem, Rk4::new(0.01), &y0, end),
         };
         let pairs: Vec<(f64, usize)> = found.iter()

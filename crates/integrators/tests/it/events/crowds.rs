@@ -45,6 +45,7 @@ fn a_blow_goes_through_a_row() {
     check(row(), DormandPrince5::default());
     check(row(), Dop853::default());
     check(row(), Adams::default());
+    check(row(), Radau5::default());
 }
 
 /// A gap with a mode: closed while x ≤ 0. The force of the closed gap depends on `mode`, so a change that is overlooked is seen.
@@ -107,6 +108,7 @@ fn a_gap_that_closes_and_opens() {
             check(gap(1.0), DormandPrince5::default(), start),
             check(gap(1.0), Dop853::default(), start),
             check(gap(1.0), Adams::default(), start),
+            check(gap(1.0), Radau5::default(), start),
         ];
         let same = counts.iter().all(|count| *count == counts[0]);
         assert!(counts[0] > 0 && (same || !certain), "{start:?}: {counts:?}");
@@ -152,6 +154,7 @@ fn a_gap_that_is_grazed() {
             check(grazing(), DormandPrince5::default(), depth);
             check(grazing(), Dop853::default(), depth);
             check(grazing(), Adams::default(), depth);
+            check(grazing(), Radau5::default(), depth);
         }
     }
 }
@@ -173,6 +176,7 @@ fn a_ball_that_does_not_bounce() {
     check(ball(0.0), DormandPrince5::default());
     check(ball(0.0), Dop853::default());
     check(ball(0.0), Adams::default());
+    check(ball(0.0), Radau5::default());
 }
 
 /// Nor is one that `at_event` leaves below the floor.

@@ -8,7 +8,7 @@ mod state;
 
 use linkdyn_integrators::{
     Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark, Ode, Progress,
-    Rk4, SecondOrder, Settings,
+    Radau5, Rk4, SecondOrder, Settings,
 };
 
 type Answer = Result<(), EvalError>;

@@ -36,6 +36,7 @@ fn before_and_after() {
     check(ball(0.5), DormandPrince5::default());
     check(ball(0.5), Dop853::default());
     check(ball(0.5), Adams::default());
+    check(ball(0.5), Radau5::default());
 }
 
 /// The right-hand side is another after the event; what is interpolated before it must not notice.
@@ -72,6 +73,7 @@ fn interpolation_when_the_problem_has_changed() {
     check(leap(), DormandPrince5::default(), 1e-8);
     check(leap(), Dop853::default(), 1e-8);
     check(leap(), Adams::default(), 1e-8);
+    check(leap(), Radau5::default(), 1e-8);
 }
 
 /// Steps and events are the same to the last bit whatever is interpolated.
@@ -104,6 +106,7 @@ fn output_changes_nothing() {
     check(ball(0.5), DormandPrince5::default);
     check(ball(0.5), Dop853::default);
     check(ball(0.5), Adams::default);
+    check(ball(0.5), Radau5::default);
 }
 
 /// Root functions that never fire leave the steps as they are, to the last bit.
@@ -122,6 +125,7 @@ fn steps_without_events_are_the_same() {
     check(DormandPrince5::default);
     check(Dop853::default);
     check(Adams::default);
+    check(Radau5::default);
 }
 
 /// All calls are counted, and every attempt is accounted for.
@@ -157,6 +161,7 @@ fn counters() {
     check(DormandPrince5::default(), 0);
     check(Dop853::default(), 3);
     check(Adams::default(), 0);
+    check(Radau5::default(), 0);
 }
 
 /// The state is on the invariants when it is changed.
@@ -197,4 +202,5 @@ fn the_state_at_an_event_is_projected() {
     check(DormandPrince5::default(), 1e-5);
     check(Dop853::default(), 1e-5);
     check(Adams::default(), 1e-5);
+    check(Radau5::default(), 1e-5);
 }
