@@ -52,6 +52,13 @@ impl Columns {
         &mut self.fours
     }
 
+    /// All numbers of a column.
+    #[inline]
+    pub fn column(&self, column: usize) -> impl Iterator<Item = f64> {
+        let rows = self.fours.chunks_exact(self.width);
+        rows.map(move |row| row[column / 4].0[column % 4])
+    }
+
     #[inline]
     pub fn at(&self, row: usize, column: usize) -> f64 {
         at(&self.fours, 4 * row * self.width + column)

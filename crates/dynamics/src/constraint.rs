@@ -84,15 +84,14 @@ impl Multipliers {
         &self.all
     }
 
-    /// Adds the multipliers for forces in the columns from `first` on.
+    /// Adds the multipliers for forces in the columns from `first` on, which is a multiple of four.
     #[inline]
     pub fn add_loads(&mut self, first: usize, forces: &[f64]) {
-        for (k, lambda) in self.lambda.iter_mut().enumerate() {
-            let shares = forces
-                .iter()
-                .enumerate()
-                .map(|(j, force)| self.all.at(k, first + j) * force);
-            *lambda += shares.sum::<f64>();
+        let rows = self.all.fours().chunks_exact(self.all.width());
+        for (lambda, row) in self.lambda.iter_mut().zip(rows) {
+            for (four, forces) in row[first / 4..].iter().zip(forces.chunks(4)) {
+                *lambda += four.0.iter().zip(forces).map(|(unit, force)| unit * force).sum::<f64>();
+            }
         }
     }
 

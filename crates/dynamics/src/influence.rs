@@ -10,11 +10,10 @@
 
 use crate::inertial_walk::{Spatial, inertial_walk};
 use crate::lanes::{Four, Lanes};
-use crate::lever::{Felt, FourLoads, Lever, Places, Sides, add};
+use crate::lever::{Felt, FourLoads, Places, Sides};
 use crate::response::Response;
 use crate::system::System;
 use crate::workspace::Workspace;
-use linkdyn_kinematics::Closure;
 use std::array::from_fn;
 
 /// What loads feel of their reactions, as affine functions of all loads.
@@ -31,9 +30,9 @@ pub(crate) struct Influence {
     walk_rates: Vec<Lanes<2>>,
     accelerations: Vec<Spatial<2>>,
     wrenches: Vec<Spatial<2>>,
-    /// What is felt in each walk, and of the multipliers of each row of the closures; of the four loads last asked.
+    /// What is felt in each walk, and of each unit multiplier; of the four loads last asked.
     walked: Vec<Felt>,
-    levers: Vec<Lever>,
+    units: Vec<Felt>,
     /// What is felt without loads and of each unit load: by the first four loads, by the next, ... Unit loads are filled up to
     /// fours with zeros.
     felt: Vec<Felt>,
@@ -45,7 +44,6 @@ impl Influence {
         let (width, motions, nodes) = (loads.div_ceil(4), loads.min(speeds), system.tree.nodes().len());
         let fours = system.reaction_loads.chunks(4);
         let sides = |closure| fours.clone().map(move |loads| Sides::new(loads, closure));
-        let rows = system.closures.iter().map(|closure| closure.rows().len()).sum();
         Self {
             loads,
             fours: fours.clone().map(FourLoads::new).collect(),
@@ -56,7 +54,7 @@ impl Influence {
             accelerations: vec![Spatial::ZERO; nodes],
             wrenches: vec![Spatial::ZERO; (motions / 2 + 1) * nodes],
             walked: vec![[Four::ZERO; 6]; 1 + motions],
-            levers: vec![Lever::NONE; rows],
+            units: vec![[Four::ZERO; 6]; system.equations],
             felt: vec![[Four::ZERO; 6]; (1 + 4 * width) * width],
         }
     }
@@ -102,7 +100,11 @@ impl System {
         work.counters.reaction_sweeps += 1 + influence.response.motions() as u64;
         self.walk_motions(work);
         for w in 0..work.reaction_loop.influence.fours.len() {
-            self.feel(w, work);
+            if work.reaction_loop.influence.has_supports {
+                self.feel::<5>(w, work);
+            } else {
+                self.feel::<6>(w, work);
+            }
         }
     }
 
@@ -132,9 +134,9 @@ impl System {
         }
     }
 
-    /// What four loads feel.
+    /// What four loads feel, of which the first `N` components are not zero.
     #[inline]
-    fn feel(&self, w: usize, work: &mut Workspace) {
+    fn feel<const N: usize>(&self, w: usize, work: &mut Workspace) {
         let influence = &mut work.reaction_loop.influence;
         let (nodes, loads) = (self.tree.nodes().len(), influence.loads);
         let width = influence.fours.len();
@@ -149,32 +151,29 @@ impl System {
             *walked = places.feel(places.local(&force), places.local(&torque));
         }
 
-        let mut levers = influence.levers.iter_mut();
+        let mut first = 0;
         for (closure, sides) in self.closures.iter().zip(influence.sides.iter().skip(w).step_by(width)) {
-            let ends = closure.ends(&work.positions);
-            for (row, lever) in closure.rows().iter().zip(&mut levers) {
-                *lever = Lever::new(row, closure, &work.positions, &ends, sides, &places);
-            }
+            places.feel_multipliers(closure, sides, &work.positions, &mut influence.units[first..]);
+            first += closure.equations();
         }
 
         let multipliers = work.constraint.all();
         let felt = &mut influence.felt[w * (1 + 4 * width)..][..1 + loads];
         for (k, felt) in felt.iter_mut().enumerate() {
-            let mut sum = [Four::ZERO; 6];
+            let column = if k == 0 { 0 } else { self.first_unit() + k - 1 };
+            let mut sum = [Four::ZERO; N];
+            let mut add = |felt: &Felt, factor: f64| sum = from_fn(|i| sum[i] + felt[i] * factor);
+            for (unit, multiplier) in influence.units.iter().zip(multipliers.column(column)) {
+                add(unit, multiplier);
+            }
             if k == 0 {
-                sum = walked[0];
+                add(&walked[0], 1.0);
             } else {
                 for (r, walked) in walked[1..].iter().enumerate() {
-                    add(&mut sum, walked, influence.response.shares(r)[k - 1]);
+                    add(walked, influence.response.shares(r)[k - 1]);
                 }
             }
-            let column = if k == 0 { 0 } else { self.first_unit() + k - 1 };
-            let mut equation = 0;
-            for (row, lever) in self.closures.iter().flat_map(Closure::rows).zip(&influence.levers) {
-                lever.add_to(&mut sum, &places, |l| multipliers.at(equation + l, column));
-                equation += row.equations();
-            }
-            *felt = sum;
+            felt[..N].copy_from_slice(&sum);
         }
     }
 }

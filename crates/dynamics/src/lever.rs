@@ -2,7 +2,7 @@
 
 use crate::lanes::{Four, Lanes, Vectors, cross, dot, plus, splat};
 use crate::system::OnNode;
-use linkdyn_kinematics::{Closure, Ends, NodePosition, Positions, Row};
+use linkdyn_kinematics::{Closure, NodePosition, Positions, Row};
 use std::array::from_fn;
 
 /// What four loads feel of their reactions: force and torque in axes of the joint's successor; or, where all loads have
@@ -49,12 +49,6 @@ fn each(loads: &[OnNode], f: impl Fn(&OnNode) -> f64) -> Four {
     Lanes(from_fn(|l| loads.get(l).map_or(0.0, &f)))
 }
 
-/// `sum += felt * factor`.
-#[inline(always)]
-pub(crate) fn add(sum: &mut Felt, felt: &Felt, factor: f64) {
-    *sum = from_fn(|i| sum[i] + felt[i] * factor);
-}
-
 /// Four loads at their places.
 pub(crate) struct Places {
     axes: [Vectors<4>; 3],
@@ -95,80 +89,31 @@ impl Places {
             ],
         }
     }
-}
 
-/// What is felt of the multipliers of a row of a closure.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Lever {
-    /// A force: its three multipliers are components in global axes. Where loads have supports, all that the three do not share
-    /// is taken out of `feel(force, arm x force)`.
-    Force([Four; 9]),
-    /// One unit multiplier.
-    Unit(Felt),
-}
-
-impl Lever {
-    pub const NONE: Self = Self::Unit([Four::ZERO; 6]);
-
-    /// Of one row of a closure.
+    /// What is felt of each unit multiplier of a closure.
     #[inline(always)]
-    pub fn new(
-        row: &Row,
-        closure: &Closure,
-        positions: &Positions,
-        ends: &Ends,
-        sides: &Sides,
-        places: &Places,
-    ) -> Self {
+    pub fn feel_multipliers(&self, closure: &Closure, sides: &Sides, positions: &Positions, units: &mut [Felt]) {
+        let ends = closure.ends(positions);
         // A reaction holds up against what closures exert on its own side.
         let sign = sides.successor - sides.predecessor;
-        if let Row::Coincident = row {
-            let end = |i: usize| sides.predecessor * ends.one()[i] + sides.successor * ends.two()[i];
-            let arm = places.local(&from_fn(|i| end(i) - places.origin[i]));
-            Self::force(places, &arm, sign)
-        } else {
-            let unit = closure.unit_wrench(row, positions);
-            let (force, two) = (splat(&unit.force), splat(&ends.two()));
-            let arm = from_fn(|i| two[i] - places.origin[i]);
-            let torque = plus(&splat(&unit.torque), &cross(&arm, &force));
-            let [force, torque] = [force, torque].map(|x| places.local(&x).map(|x| x * sign));
-            Self::Unit(places.feel(force, torque))
-        }
-    }
-
-    /// Force on an arm in the loads' own axes, with a sign.
-    #[inline(always)]
-    fn force(places: &Places, arm: &Vectors<4>, sign: Four) -> Self {
-        let [x, y, z] = arm.map(|x| x * sign);
-        Self::Force(match places.weights {
-            None => [sign, x, y, z, sign, sign, sign, sign, sign],
-            Some([a1, b1, a2, b2, c, d]) => {
-                let (a, b) = (a1 * sign - b1 * z, a2 * sign - b2 * z);
-                [a, b1 * x, b1 * y, b, b2 * x, b2 * y, c * sign, d * x, d * y]
-            }
-        })
-    }
-
-    /// Adds what is felt of multipliers to `felt`; `lambda` tells them.
-    #[inline(always)]
-    pub fn add_to(&self, felt: &mut Felt, places: &Places, lambda: impl Fn(usize) -> f64) {
-        match self {
-            Self::Unit(unit) => add(felt, unit, lambda(0)),
-            Self::Force([a, ax, ay, b, bx, by, c, cx, cy]) => {
-                let force: Vectors<4> = from_fn(|i| Lanes([lambda(i); 4]));
-                let [x, y, z] = places.local(&force);
-                if places.weights.is_some() {
-                    felt[0] += *a * x + *ax * z;
-                    felt[1] += *a * y + *ay * z;
-                    felt[2] += *b * x + *bx * z;
-                    felt[3] += *b * y + *by * z;
-                    felt[4] += *c * z + *cx * y - *cy * x;
-                } else {
-                    let torque = cross(&[*ax, *ay, *b], &[x, y, z]);
-                    let wrench = [*a * x, *a * y, *a * z, torque[0], torque[1], torque[2]];
-                    *felt = from_fn(|i| felt[i] + wrench[i]);
+        let mut k = 0;
+        for row in closure.rows() {
+            if let Row::Coincident = row {
+                let end = |i: usize| sides.predecessor * ends.one()[i] + sides.successor * ends.two()[i];
+                let arm = self.local(&from_fn(|i| end(i) - self.origin[i]));
+                for (i, unit) in units[k..k + 3].iter_mut().enumerate() {
+                    let force = self.axes.map(|axis| axis[i] * sign);
+                    *unit = self.feel(force, cross(&arm, &force));
                 }
+            } else {
+                let unit = closure.unit_wrench(row, positions);
+                let (force, two) = (splat(&unit.force), splat(&ends.two()));
+                let arm = from_fn(|i| two[i] - self.origin[i]);
+                let torque = plus(&splat(&unit.torque), &cross(&arm, &force));
+                let [force, torque] = [force, torque].map(|x| self.local(&x).map(|x| x * sign));
+                units[k] = self.feel(force, torque);
             }
+            k += row.equations();
         }
     }
 }
