@@ -2,7 +2,7 @@
 //! it runs, printed are the evaluations of one run. The difference of two counts over the difference of the evaluations is free
 //! of everything else; instructions of `rhs` proper are not part of the overhead, callgrind lists them apart.
 
-use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Ode, Rk4};
+use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Ode, Radau5, Rk4};
 
 mod cases;
 
@@ -14,6 +14,7 @@ fn work<P: Ode>(problem: P, method: &str) -> u64 {
         "dp5" => run(problem, DormandPrince5::default()),
         "dop853" => run(problem, Dop853::default()),
         "adams" => run(problem, Adams::default()),
+        "radau" => run(problem, Radau5::default()),
         other => panic!("no method {other}"),
     }
 }

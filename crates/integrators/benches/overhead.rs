@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Method, Ode, Rk4};
+use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Method, Ode, Radau5, Rk4};
 
 mod cases;
 
@@ -29,6 +29,7 @@ fn case<P: Ode>(criterion: &mut Criterion, name: &str, problem: fn() -> P) {
     bench("DormandPrince5", &|| run(problem(), DormandPrince5::default()));
     bench("Dop853", &|| run(problem(), Dop853::default()));
     bench("Adams", &|| run(problem(), Adams::default()));
+    bench("Radau5", &|| run(problem(), Radau5::default()));
     // As the driver sees it: a method behind a pointer.
     bench("Adams, boxed", &|| {
         let method: Box<dyn Method<P>> = Box::new(Adams::default());

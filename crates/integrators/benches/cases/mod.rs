@@ -34,6 +34,12 @@ impl Ode for Duffing {
         dy[8] = y[0];
         Ok(())
     }
+    fn quadratures(&self) -> usize {
+        1
+    }
+    fn second_order_pairs(&self) -> usize {
+        4
+    }
 }
 
 /// Runs to t = 200 and returns the number of evaluations.

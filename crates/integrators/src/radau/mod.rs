@@ -23,8 +23,8 @@ use systems::{Layout, Systems};
 /// The error is estimated by a formula of order 3 while the solution is of order 5, so it is mostly far smaller than the
 /// tolerance: near tolerance^1.25. (The subroutine RADAU5 of the book takes 0.1 tolerance^(2/3) for the tolerance it is given.)
 /// Interpolation is by the collocation polynomial, at no cost; its error is of the order of the estimate, but larger where stiff
-/// components follow slow ones in steps whose length nothing else limits. Newton's iteration does not see components whose tolerance is infinite: this is meant for
-/// [quadratures](Ode::quadratures), which are integrated after it.
+/// components follow slow ones in steps whose length nothing else limits. Newton's iteration does not see components whose
+/// tolerance is infinite: this is meant for [quadratures](Ode::quadratures), which are integrated after it.
 #[derive(Debug, Clone)]
 pub struct Radau5 {
     /// Length of fixed steps.
@@ -295,7 +295,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
         y_new: &mut [f64],
         error: &mut [f64],
     ) -> Result<f64, EvalError> {
-        let first = self.attempts == 0 && self.polynomial.step().is_some();
+        let ordinary = self.attempts == 0 && self.polynomial.step().is_some();
         self.attempts += 1;
         self.shorten = None;
         error.fill(0.0);
@@ -345,7 +345,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
         let (systems, jacobian) = (&mut self.systems, &self.jacobian);
         self.stages.estimate(systems, jacobian, step.h, &self.f_old, error);
         let norm = weights.norm(step.y, y_new, error);
-        if norm < 1.0 || first {
+        if norm < 1.0 || ordinary {
             return Ok(norm);
         }
         // In a transient the estimate may be far too large; once more through the filter it is not.
