@@ -3,10 +3,10 @@
 
 use linkdyn_integrators::{Adams, Dop853, Integration, Method, Settings};
 use linkdyn_mechanisms::Simulation;
-use linkdyn_tests::rsrrr::ready;
+use linkdyn_tests::scenes::ready_rsrrr;
 
 fn allocations_of_steps<M: Method<Simulation>>(friction: bool, method: M) -> u64 {
-    let scene = ready(friction, 1.0);
+    let scene = ready_rsrrr(friction, 1.0);
     let simulation = Simulation::new(&scene.mechanism);
     let y = simulation.state_vector(&scene.start);
     let settings = Settings::tolerances(1e-8, 1e-8);

@@ -2,11 +2,11 @@
 
 use linkdyn_integrators::{Dop853, EvalError, Integration, Ode, Progress, Radau5, Settings, Statistics};
 use linkdyn_mechanisms::Simulation;
-use linkdyn_tests::rsrrr::{Ready, distance, ready, simulate};
+use linkdyn_tests::scenes::{Ready, distance, ready_rsrrr, simulate};
 
 #[test]
 fn implicit_and_explicit_agree() {
-    let rsrrr = ready(true, 1.0);
+    let rsrrr = ready_rsrrr(true, 1.0);
     let explicit = simulate(&rsrrr, Dop853::default(), 1e-10, 1.0, 0.05);
     let implicit = simulate(&rsrrr, Radau5::default(), 1e-9, 1.0, 1.0);
     explicit.end.expect("the run ends");
@@ -41,7 +41,7 @@ fn end<P: Ode>(problem: P, y: &[f64], settings: Settings) -> (Vec<f64>, Statisti
 
 #[test]
 fn structure_saves_work_and_changes_no_digit_that_counts() {
-    let Ready { mechanism, start, .. } = ready(true, 1.0);
+    let Ready { mechanism, start, .. } = ready_rsrrr(true, 1.0);
     let simulation = Simulation::new(&mechanism);
     let (y, settings) = (simulation.state_vector(&start), simulation.settings(1e-8, 1e-8));
     let (told, work) = end(simulation.clone(), &y, settings.clone());

@@ -22,3 +22,4 @@ mod recursion_and_lagrange;
 mod redundant_closures;
 mod refusals;
 mod rsrrr;
+mod rsup;

@@ -5,7 +5,7 @@ use linkdyn_integrators::{Adams, Corrector, Dop853, DormandPrince5, IntegrationE
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
 use linkdyn_mechanisms::{MotionError, Observation, RunError, Simulation};
 use linkdyn_tests::reference::{self, Table};
-use linkdyn_tests::rsrrr::{Finished, distance, prepare, ready, simulate, simulate_with};
+use linkdyn_tests::scenes::{Finished, distance, prepare, ready_rsrrr, simulate, simulate_with};
 
 /// Largest difference of the rows and a reference, by the head of the column's name.
 fn differences(rows: &[Observation], simulation: &Simulation, table: &Table) -> Vec<(&'static str, f64)> {
@@ -62,7 +62,7 @@ fn motion_difference(a: &Finished, b: &Finished) -> f64 {
 // of the crank speed that derived quantities lose; the reference is far better than that.
 #[test]
 fn ideal_run_equals_the_independent_reference() {
-    let run = simulate(&ready(false, 1.0), Dop853::default(), 1e-12, 5.0, 0.05);
+    let run = simulate(&ready_rsrrr(false, 1.0), Dop853::default(), 1e-12, 5.0, 0.05);
     run.end.as_ref().expect("runs to the end");
     let limits = [
         ("q.", 1e-11),
@@ -80,7 +80,7 @@ fn ideal_run_equals_the_independent_reference() {
 
 #[test]
 fn friction_run_equals_the_independent_reference() {
-    let run = simulate(&ready(true, 1.0), Dop853::default(), 1e-12, 5.0, 0.05);
+    let run = simulate(&ready_rsrrr(true, 1.0), Dop853::default(), 1e-12, 5.0, 0.05);
     run.end.as_ref().expect("runs to the end");
     let limits = [
         ("q.", 1e-9),
@@ -99,7 +99,7 @@ fn friction_run_equals_the_independent_reference() {
 
 #[test]
 fn ideal_run_agrees_between_families_and_keeps_energy_and_loop() {
-    let scene = ready(false, 1.0);
+    let scene = ready_rsrrr(false, 1.0);
     let multistep = simulate(&scene, Adams::default(), 1e-12, 5.0, 0.01);
     let one_step = simulate(&scene, Dop853::default(), 1e-12, 5.0, 0.01);
     assert!(motion_difference(&multistep, &one_step) < 1e-9);
@@ -114,7 +114,7 @@ fn ideal_run_agrees_between_families_and_keeps_energy_and_loop() {
 
 #[test]
 fn friction_run_agrees_between_families_and_solves_its_loop_at_every_evaluation() {
-    let scene = ready(true, 1.0);
+    let scene = ready_rsrrr(true, 1.0);
     let multistep = simulate(&scene, Adams::default(), 1e-12, 5.0, 0.01);
     let one_step = simulate(&scene, DormandPrince5::default(), 1e-12, 5.0, 0.01);
     assert!(motion_difference(&multistep, &one_step) < 1e-7);
@@ -127,7 +127,7 @@ fn friction_run_agrees_between_families_and_solves_its_loop_at_every_evaluation(
 
 #[test]
 fn rows_can_be_recomputed_from_their_own_state() {
-    let scene = ready(true, 1.0);
+    let scene = ready_rsrrr(true, 1.0);
     let run = simulate(&scene, Adams::default(), 1e-10, 5.0, 0.05);
     for row in &run.rows {
         // A fresh simulation knows nothing of the run.
@@ -141,7 +141,7 @@ fn rows_can_be_recomputed_from_their_own_state() {
 
 #[test]
 fn crank_error_is_1e_9_with_at_most_3000_evaluations() {
-    let scene = ready(false, 1.0);
+    let scene = ready_rsrrr(false, 1.0);
     let table = reference::rsrrr_ideal();
     let psi11 = table.column("q.psi11");
     let error = |o: &Observation, row: &Vec<f64>| (o.q[0] - row[psi11]).abs();
@@ -172,7 +172,7 @@ fn crank_error_is_1e_9_with_at_most_3000_evaluations() {
 
 #[test]
 fn tolerance_a_hundredth_cuts_the_error_at_least_tenfold() {
-    let scene = ready(false, 1.0);
+    let scene = ready_rsrrr(false, 1.0);
     let table = reference::rsrrr_ideal();
     let last = table.rows().last().expect("rows");
     let error = |run: &Finished| distance(&run.rows.last().expect("rows").q, &last[1..5]);
@@ -191,7 +191,7 @@ fn tolerance_a_hundredth_cuts_the_error_at_least_tenfold() {
 
 #[test]
 fn output_does_not_change_the_path() {
-    let scene = ready(true, 1.0);
+    let scene = ready_rsrrr(true, 1.0);
     let end = |every: f64| {
         simulate(&scene, Adams::default(), 1e-9, 2.5, every)
             .rows
@@ -203,7 +203,7 @@ fn output_does_not_change_the_path() {
 
 #[test]
 fn simulations_on_two_threads_repeat_each_other_bit_for_bit() {
-    let scene = ready(true, 1.0);
+    let scene = ready_rsrrr(true, 1.0);
     let alone = simulate(&scene, Dop853::default(), 1e-8, 1.0, 0.1).rows;
     let threads: Vec<_> = std::thread::scope(|scope| {
         let work = || simulate(&scene, Dop853::default(), 1e-8, 1.0, 0.1).rows;
@@ -226,14 +226,14 @@ fn lagrange_form_gives_the_same_motion() {
         scene.linkage.formulation = Formulation::Lagrange;
         prepare(scene)
     };
-    let recursive = simulate(&ready(false, 1.0), Dop853::default(), 1e-10, 1.0, 0.1);
+    let recursive = simulate(&ready_rsrrr(false, 1.0), Dop853::default(), 1e-10, 1.0, 0.1);
     let same = simulate(&lagrange(false), Dop853::default(), 1e-10, 1.0, 0.1);
     // The steps are the same, so that rounding alone differs.
     let difference = motion_difference(&recursive, &same);
     assert!(difference < 1e-12, "{difference:e}");
 
     // With friction a kink can make two runs step differently; the equations are compared state by state.
-    let recursive = simulate(&ready(true, 1.0), Dop853::default(), 1e-8, 5.0, 0.1);
+    let recursive = simulate(&ready_rsrrr(true, 1.0), Dop853::default(), 1e-8, 5.0, 0.1);
     let lagrange = lagrange(true);
     let mut simulation = Simulation::new(&lagrange.mechanism);
     for row in &recursive.rows {
@@ -247,7 +247,7 @@ fn lagrange_form_gives_the_same_motion() {
 
 #[test]
 fn work_of_one_run_is_what_it_was() {
-    let run = simulate(&ready(true, 1.0), Dop853::default(), 1e-8, 5.0, 5.0);
+    let run = simulate(&ready_rsrrr(true, 1.0), Dop853::default(), 1e-8, 5.0, 5.0);
     let s = run.statistics;
     // One row each at the beginning and the end is observed on top of the evaluations.
     assert_eq!(run.simulation.counters().evaluations, s.evaluations + 2);
@@ -287,7 +287,7 @@ fn rk4_converges_to_the_reference_with_order_four() {
     let table = reference::rsrrr_ideal();
     let last = table.rows().last().expect("rows");
     let error = |step| {
-        let run = simulate(&ready(false, 1.0), Rk4::new(step), 1e-9, 5.0, 5.0);
+        let run = simulate(&ready_rsrrr(false, 1.0), Rk4::new(step), 1e-9, 5.0, 5.0);
         (run.rows.last().expect("rows").q[0] - last[1]).abs()
     };
     let order = (error(4e-3) / error(2e-3)).log2();
@@ -309,7 +309,7 @@ fn diagnosis(end: RunError) -> DynamicsError {
 #[test]
 fn friction_below_the_fold_runs() {
     for scale in [1.5, 1.85] {
-        let run = simulate(&ready(true, scale), Dop853::default(), 1e-8, 5.0, 0.5);
+        let run = simulate(&ready_rsrrr(true, scale), Dop853::default(), 1e-8, 5.0, 0.5);
         run.end.unwrap_or_else(|error| panic!("{scale}: {error}"));
         assert!(run.rows.last().expect("rows").q[0] > 30.0);
     }
@@ -319,8 +319,8 @@ fn friction_below_the_fold_runs() {
 fn friction_beyond_the_fold_jams_at_a_time_that_methods_agree_on() {
     for (scale, limits) in [(1.9, 0.57..0.58), (2.0, 0.52..0.54), (3.0, 0.31..0.33)] {
         let times = [
-            simulate(&ready(true, scale), Dop853::default(), 1e-9, 5.0, 0.5).end,
-            simulate(&ready(true, scale), Adams::default(), 1e-10, 5.0, 0.5).end,
+            simulate(&ready_rsrrr(true, scale), Dop853::default(), 1e-9, 5.0, 0.5).end,
+            simulate(&ready_rsrrr(true, scale), Adams::default(), 1e-10, 5.0, 0.5).end,
         ]
         .map(|end| match diagnosis(end.expect_err("jams")) {
             DynamicsError::Jammed { time, speed, .. } => {

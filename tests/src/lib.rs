@@ -6,7 +6,7 @@ pub mod linkages;
 pub mod loads;
 pub mod numbers;
 pub mod reference;
-pub mod rsrrr;
+pub mod scenes;
 pub mod strategies;
 
 pub use blueprint::{Blueprint, Cut, Machine, Part};

@@ -18,7 +18,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Simulate a scene and write its results
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// List the built-in scenes
     Scenes(ScenesArgs),
 }
@@ -28,26 +28,46 @@ pub enum Command {
 pub struct RunArgs {
     /// Name of a built-in scene (see `linkdyn scenes`)
     pub scene: String,
-    /// Folder for the results; an earlier run in it is replaced as a whole [default: out/SCENE or out/SCENE-friction]
+    /// Folder for the results; an earlier run in it is replaced as a whole [default: below out/, named after scene and variant]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Take friction in the joints into account
-    #[arg(long)]
+    #[arg(long, overrides_with = "no_friction")]
     pub friction: bool,
-    /// Factor on all coefficients of friction
-    #[arg(long, value_name = "FACTOR", value_parser = factor, default_value_t = 1.0)]
-    pub friction_scale: f64,
-    /// Find friction by this number of sweeps reactions - friction - accelerations from zero at each evaluation, instead of
+    /// Leave friction out
+    #[arg(long)]
+    pub no_friction: bool,
+    /// Factor on all coefficients of friction (rsrrr)
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    pub friction_scale: Option<f64>,
+    /// Give joint R clearance, with contact and friction (rsup)
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub clearance: Option<ClearanceArg>,
+    /// Radius of the hole less that of the pin, in metres (rsup) [default: 0.001]
+    #[arg(long, value_name = "METRES", value_parser = positive)]
+    pub clearance_size: Option<f64>,
+    /// Bristle model of friction in the clearance joint (rsup) [default: lugre]
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub bristle: Option<BristleArg>,
+    /// Make the coupler flexible, with N spring-damping elements and N + 1 rigid finite elements (rsup)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=500))]
+    pub flexible: Option<u16>,
+    /// The second paper's own way (rsup): rk4 with a step of 5e-6 s, drift terms with alpha = 100 and beta = 50 in place of
+    /// projection, contacts made and lost at the ends of steps
+    #[arg(long)]
+    pub as_published: bool,
+    /// Find joint friction by this number of sweeps reactions - friction - accelerations from zero at each evaluation, instead of
     /// solving that loop (the paper's way)
     #[arg(long, value_name = "K", value_parser = count)]
     pub friction_sweeps: Option<usize>,
     /// Formulation of the equations of motion
     #[arg(long, value_enum, default_value_t = FormulationArg::Recursive)]
     pub formulation: FormulationArg,
-    /// Integration method: adams (variable order and step), dop853, dopri5; with fixed step rk4, newmark [default: adams]
+    /// Integration method: adams (variable order and step), dop853, dopri5, radau5 (for stiff scenes); with fixed
+    /// step rk4, newmark [default: radau5 with clearance or a flexible link, else adams]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// Relative tolerance of adaptive methods [default: 1e-12]
+    /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12, radau5 1e-9]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub rtol: Option<f64>,
     /// Absolute tolerance of adaptive methods [default: that of --rtol]
@@ -90,6 +110,30 @@ pub enum FormulationArg {
     Lagrange,
 }
 
+/// Models of a joint with clearance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ClearanceArg {
+    /// The axes stay parallel
+    Planar,
+    /// The pin may tilt in its hole
+    Spatial,
+}
+
+/// Bristle models of friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BristleArg {
+    /// LuGre as published: passive at low speeds only
+    Lugre,
+    /// LuGre whose damping is capped, so that it is passive and friction never exceeds its static value
+    Cap,
+    /// LuGre whose damping decays with the sliding speed
+    Decay,
+    /// Elasto-plastic, with capped damping
+    ElastoPlastic,
+    /// Dahl: no damping of the bristle, no static peak
+    Dahl,
+}
+
 /// A whole number from 1 to 1000.
 fn count(text: &str) -> Result<usize, String> {
     match text.trim().parse::<usize>() {
@@ -126,7 +170,7 @@ mod tests {
     fn run(options: &[&str]) -> Result<RunArgs, clap::Error> {
         let words = ["linkdyn", "run"].iter().chain(options);
         match Arguments::try_parse_from(words)?.command {
-            Command::Run(args) => Ok(args),
+            Command::Run(args) => Ok(*args),
             Command::Scenes(_) => panic!("`run` was parsed as `scenes`"),
         }
     }

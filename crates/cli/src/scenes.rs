@@ -1,39 +1,191 @@
-//! The built-in scenes.
+//! The built-in scenes, and what the command line may switch in them.
 
 use linkdyn_mechanisms::Scene;
-use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
+use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, bristle, rsrrr, rsup};
+use linkdyn_mechanisms::dynamics::Baumgarte;
+use linkdyn_mechanisms::friction::{Bristle, ElastoPlastic, Guard, LuGre};
 
-use crate::args::ScenesArgs;
+use crate::args::{BristleArg, ClearanceArg, RunArgs, ScenesArgs};
 use crate::errors::CliError;
 use crate::output;
 use crate::summary::{Cell, Table};
 
-/// What the command line may switch in a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What the command line may switch in a scene; `None` leaves it as the scene has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Variant {
-    /// Whether the joints have friction.
-    pub friction: bool,
+    /// Whether there is friction.
+    pub friction: Option<bool>,
     /// Factor on all coefficients of friction.
-    pub friction_scale: f64,
+    pub friction_scale: Option<f64>,
+    /// Clearance of a joint.
+    pub clearance: Option<ClearanceArg>,
+    /// Its size \[m\].
+    pub clearance_size: Option<f64>,
+    /// Friction in it.
+    pub bristle: Option<BristleArg>,
+    /// Number of spring-damping elements.
+    pub flexible: Option<u16>,
+    /// Whether drift terms take the place of projection.
+    pub as_published: bool,
+}
+
+impl Variant {
+    /// What the command line asks for.
+    #[must_use]
+    pub fn new(args: &RunArgs) -> Self {
+        Self {
+            friction: (args.friction || args.no_friction).then_some(args.friction),
+            friction_scale: args.friction_scale,
+            clearance: args.clearance,
+            clearance_size: args.clearance_size,
+            bristle: args.bristle,
+            flexible: args.flexible,
+            as_published: args.as_published,
+        }
+    }
+
+    /// The options given, by name.
+    fn given(&self) -> impl Iterator<Item = &'static str> {
+        [
+            (self.friction_scale.is_some(), "--friction-scale"),
+            (self.clearance.is_some(), "--clearance"),
+            (self.clearance_size.is_some(), "--clearance-size"),
+            (self.bristle.is_some(), "--bristle"),
+            (self.flexible.is_some(), "--flexible"),
+            (self.as_published, "--as-published"),
+        ]
+        .into_iter()
+        .filter_map(|(given, name)| given.then_some(name))
+    }
 }
 
 /// A built-in scene.
 pub struct Entry {
     /// Name on the command line.
     pub name: &'static str,
-    make: fn(&Variant) -> Scene,
+    /// Options of `linkdyn run` that switch something in this scene alone.
+    options: &'static [&'static str],
+    make: fn(&Variant) -> Result<Scene, CliError>,
+    /// What the variant is called in pictures and in the name of the folder.
+    label: fn(&Variant) -> String,
+    /// Simpler or other variants that pictures show beside this one.
+    beside: fn(&Variant) -> Vec<Variant>,
 }
 
 /// All built-in scenes.
-pub const SCENES: &[Entry] = &[Entry {
-    name: "rsrrr",
-    make: |variant| {
-        rsrrr(&Rsrrr {
-            friction: variant.friction,
-            friction_scale: variant.friction_scale,
-        })
+pub const SCENES: &[Entry] = &[
+    Entry {
+        name: "rsrrr",
+        options: &["--friction-scale"],
+        make: |variant| {
+            Ok(rsrrr(&Rsrrr {
+                friction: variant.friction.unwrap_or(false),
+                friction_scale: variant.friction_scale.unwrap_or(1.0),
+            }))
+        },
+        label: |variant| match variant.friction {
+            Some(true) => "joint friction".into(),
+            _ => "ideal joints".into(),
+        },
+        beside: |variant| {
+            let friction = Some(!variant.friction.unwrap_or(false));
+            vec![Variant { friction, ..*variant }]
+        },
     },
-}];
+    Entry {
+        name: "rsup",
+        options: &[
+            "--clearance",
+            "--clearance-size",
+            "--bristle",
+            "--flexible",
+            "--as-published",
+        ],
+        make: make_rsup,
+        label: |variant| {
+            let joint = match (variant.clearance, variant.friction) {
+                (None, _) => "ideal joint",
+                (Some(ClearanceArg::Planar), Some(false)) => "planar clearance without friction",
+                (Some(ClearanceArg::Planar), _) => "planar clearance",
+                (Some(ClearanceArg::Spatial), Some(false)) => "spatial clearance without friction",
+                (Some(ClearanceArg::Spatial), _) => "spatial clearance",
+            };
+            match variant.flexible {
+                None => joint.into(),
+                Some(n) => format!("{joint}, flexible coupler of {n}"),
+            }
+        },
+        beside: |variant| {
+            let rigid = Variant {
+                flexible: None,
+                ..*variant
+            };
+            let ideal = Variant {
+                clearance: None,
+                clearance_size: None,
+                bristle: None,
+                ..rigid
+            };
+            let mut others = Vec::new();
+            if variant.clearance.is_some() {
+                others.push(ideal);
+            }
+            if variant.flexible.is_some() {
+                others.push(rigid);
+            }
+            others
+        },
+    },
+];
+
+fn make_rsup(variant: &Variant) -> Result<Scene, CliError> {
+    let default = Rsup::default();
+    let scene = rsup(&Rsup {
+        clearance: variant.clearance.map(|kind| match kind {
+            ClearanceArg::Planar => ClearanceKind::Planar,
+            ClearanceArg::Spatial => ClearanceKind::Spatial,
+        }),
+        clearance_size: variant.clearance_size.unwrap_or(default.clearance_size),
+        friction: variant
+            .friction
+            .unwrap_or(true)
+            .then(|| friction(variant.bristle.unwrap_or(BristleArg::Lugre))),
+        flexible: variant.flexible.map(usize::from),
+    });
+    let mut scene = scene.map_err(|error| CliError::usage("there is no such scene").with_source(error))?;
+    if variant.as_published {
+        let (alpha, beta) = (100.0, 50.0);
+        scene.linkage.baumgarte = Some(Baumgarte { alpha, beta });
+    }
+    Ok(scene)
+}
+
+/// The published friction of the clearance joint, and its guarded forms.
+fn friction(model: BristleArg) -> Bristle {
+    let published = bristle();
+    let capped = LuGre {
+        guard: Guard::Cap,
+        ..published
+    };
+    match model {
+        BristleArg::Lugre => published.into(),
+        BristleArg::Cap => capped.into(),
+        BristleArg::Decay => LuGre {
+            // Beyond the Stribeck speed, where sliding is well under way.
+            guard: Guard::Decay {
+                speed: published.stribeck_speed,
+            },
+            ..published
+        }
+        .into(),
+        BristleArg::ElastoPlastic => ElastoPlastic {
+            lugre: capped,
+            elastic_share: 0.7,
+        }
+        .into(),
+        BristleArg::Dahl => LuGre::dahl(published.kinetic_coefficient, published.bristle_stiffness).into(),
+    }
+}
 
 /// The scene of a name.
 ///
@@ -49,9 +201,40 @@ pub fn find(name: &str) -> Result<&'static Entry, CliError> {
 
 impl Entry {
     /// The scene with what the command line switched.
-    #[must_use]
-    pub fn scene(&self, variant: &Variant) -> Scene {
+    ///
+    /// # Errors
+    /// Options that this scene does not have, values that make no sense for it.
+    pub fn scene(&self, variant: &Variant) -> Result<Scene, CliError> {
+        if let Some(option) = variant.given().find(|option| !self.options.contains(option)) {
+            let message = format!("`{option}` does not go with scene `{}`", self.name);
+            let others = SCENES.iter().filter(|entry| entry.options.contains(&option));
+            let others: Vec<_> = others.map(|entry| entry.name).collect();
+            return Err(CliError::usage(message).with_hint(format!("scenes that have it: {}", others.join(", "))));
+        }
+        let needs_clearance = [
+            (variant.clearance_size.is_some(), "--clearance-size"),
+            (variant.bristle.is_some(), "--bristle"),
+        ];
+        if let Some((_, option)) = needs_clearance
+            .into_iter()
+            .find(|(given, _)| *given && variant.clearance.is_none())
+        {
+            let message = format!("`{option}` says nothing without `--clearance`");
+            return Err(CliError::usage(message).with_hint("add `--clearance planar` or `--clearance spatial`"));
+        }
         (self.make)(variant)
+    }
+
+    /// What a variant is called.
+    #[must_use]
+    pub fn label(&self, variant: &Variant) -> String {
+        (self.label)(variant)
+    }
+
+    /// Variants that pictures show beside this one.
+    #[must_use]
+    pub fn beside(&self, variant: &Variant) -> Vec<Variant> {
+        (self.beside)(variant)
     }
 }
 
@@ -60,16 +243,17 @@ impl Entry {
 /// # Errors
 /// Only those of standard output.
 pub fn list(args: &ScenesArgs) -> Result<(), CliError> {
-    let mut table = Table::new("scenes", &[("scene", ""), ("what it is", ""), ("until", "s")]);
+    let mut table = Table::new(
+        "scenes",
+        &[("scene", ""), ("what it is", ""), ("until", "s"), ("options", "")],
+    );
     for entry in SCENES {
-        let scene = entry.scene(&Variant {
-            friction: false,
-            friction_scale: 1.0,
-        });
+        let scene = entry.scene(&Variant::default())?;
         table.row([
             Cell::text(entry.name),
             Cell::text(scene.summary),
             Cell::number(scene.until),
+            Cell::text(format!("--friction --no-friction {}", entry.options.join(" "))),
         ]);
     }
     if args.json {

@@ -1,5 +1,6 @@
 //! What can be wrong with a linkage.
 
+use crate::clearance::ClearanceError;
 use linkdyn_dynamics::{DynamicsError, SystemError};
 use linkdyn_friction::ParameterError;
 use linkdyn_kinematics::TreeError;
@@ -84,6 +85,35 @@ pub enum BuildError {
         /// Coordinates.
         expected: usize,
         /// Names.
+        found: usize,
+    },
+    /// Clearance is for revolute joints.
+    #[error("cut joint `{joint}` has clearance, but is no revolute joint")]
+    ClearanceKind {
+        /// The cut joint.
+        joint: String,
+    },
+    /// A parameter of a clearance is out of range.
+    #[error("clearance of joint `{joint}`: {source}")]
+    Clearance {
+        /// The cut joint.
+        joint: String,
+        /// What is wrong.
+        source: ClearanceError,
+    },
+    /// Springs do not fit the joint.
+    #[error(
+        "joint `{joint}` has {coordinates} coordinates and {speeds} speeds, {found} springs were given; springs need a joint whose \
+             speeds are the rates of its coordinates, and there must be one for each"
+    )]
+    Springs {
+        /// The joint.
+        joint: String,
+        /// Coordinates.
+        coordinates: usize,
+        /// Speeds.
+        speeds: usize,
+        /// Springs.
         found: usize,
     },
     /// A parameter is out of range.

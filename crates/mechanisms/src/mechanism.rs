@@ -1,9 +1,11 @@
 //! A built linkage: the equations of motion with names.
 
+use crate::clearance::ClearanceJoint;
 use crate::error::{MotionError, StartError};
 use linkdyn_dynamics::{DynamicsError, System};
+use linkdyn_friction::Bristle;
 use linkdyn_kinematics::assembly::{self, Assembly, Settings};
-use linkdyn_kinematics::{Attachment, LinkId, Pose};
+use linkdyn_kinematics::{Attachment, Closure, LinkId, Pose};
 use std::sync::Arc;
 
 /// An immutable mechanism; cheap to clone and to share between threads.
@@ -13,6 +15,10 @@ pub struct Mechanism {
     pub(crate) links: Vec<NamedLink>,
     pub(crate) joints: Vec<NamedJoint>,
     pub(crate) loops: Vec<NamedLoop>,
+    /// All cut joints without their clearance.
+    pub(crate) centred: Vec<Closure>,
+    /// Joints with clearance; they are the first of the loads with internals.
+    pub(crate) contacts: Vec<Contact>,
     pub(crate) coordinates: Vec<String>,
     pub(crate) speeds: Vec<String>,
 }
@@ -40,6 +46,23 @@ pub(crate) struct NamedJoint {
 pub(crate) struct NamedLoop {
     pub name: String,
     pub components: Vec<String>,
+}
+
+/// A joint with clearance by name.
+#[derive(Clone, Debug)]
+pub(crate) struct Contact {
+    pub name: String,
+    pub joint: Arc<ClearanceJoint>,
+}
+
+impl Contact {
+    /// Name of one of its contact points.
+    pub fn point_name(&self, point: usize) -> String {
+        match self.joint.points() {
+            1 => self.name.clone(),
+            _ => format!("{}{}", self.name, point + 1),
+        }
+    }
 }
 
 /// Coordinates and speeds to start from.
@@ -90,6 +113,26 @@ impl Mechanism {
         rubbing.map(|joint| self.speeds[joint.speed].as_str())
     }
 
+    /// Names of the contact points of joints with clearance, in the order of [`crate::Observation::contacts`].
+    pub fn contact_names(&self) -> impl Iterator<Item = String> {
+        let contacts = self.contacts.iter();
+        contacts.flat_map(|contact| (0..contact.joint.points()).map(|point| contact.point_name(point)))
+    }
+
+    /// Friction at each contact point.
+    pub(crate) fn bristles(&self) -> impl Iterator<Item = Option<&Bristle>> {
+        let contacts = self.contacts.iter();
+        contacts
+            .flat_map(|contact| std::iter::repeat_n(contact.joint.clearance.friction.as_ref(), contact.joint.points()))
+    }
+
+    /// Radial clearance at each contact point \[m\].
+    pub fn clearances(&self) -> impl Iterator<Item = f64> + '_ {
+        let contacts = self.contacts.iter();
+        contacts
+            .flat_map(|contact| std::iter::repeat_n(contact.joint.clearance.fit.clearance(), contact.joint.points()))
+    }
+
     /// Whether a joint of the mechanism has friction.
     pub fn has_friction(&self) -> bool {
         self.joints.iter().any(|joint| joint.has_friction)
@@ -112,7 +155,7 @@ impl Mechanism {
         self.links.iter().find(|l| l.name == link).and_then(|l| l.frame)
     }
 
-    /// Closes the loops from a guess; see [`assembly::assemble`].
+    /// Closes the loops from a guess, joints with clearance centred; see [`assembly::assemble`].
     ///
     /// # Errors
     /// [`StartError`] for unknown names and where the loops cannot be closed with what is held.
@@ -132,8 +175,8 @@ impl Mechanism {
             let speed = self.speed(name)?;
             (v[speed], given[speed]) = (*value, true);
         }
-        let closed = assembly::assemble(tree, self.system.closures(), &q, &held, &Settings::default())?;
-        let v = assembly::consistent_velocities(tree, self.system.closures(), &closed.q, &v, &given)?;
+        let closed = assembly::assemble(tree, &self.centred, &q, &held, &Settings::default())?;
+        let v = assembly::consistent_velocities(tree, &self.centred, &closed.q, &v, &given)?;
         let state = State { q: closed.q.clone(), v };
         Ok((state, closed))
     }

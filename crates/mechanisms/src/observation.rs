@@ -1,8 +1,10 @@
 //! What can be observed at a state, and the columns in which result files list it.
 
+use crate::clearance::ContactPoint;
 use crate::error::MotionError;
+use crate::mechanism::Mechanism;
 use crate::simulation::Simulation;
-use linkdyn_dynamics::{Energy, Reaction};
+use linkdyn_dynamics::{Energy, Instant, Reaction, Workspace};
 use linkdyn_kinematics::Wrench;
 
 /// What a mechanism does at one instant.
@@ -22,6 +24,8 @@ pub struct Observation {
     pub reactions: Vec<Reaction>,
     /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
     pub friction: Vec<f64>,
+    /// Contact points of joints with clearance.
+    pub contacts: Vec<ContactPoint>,
     /// Energies.
     pub energy: Energy,
     /// Work done on the mechanism by drives, friction and damping since the start \[J\].
@@ -63,9 +67,38 @@ impl Simulation {
         // Results show friction with the sign of the speed; the generalised force opposes it.
         o.friction.extend(self.work.reaction_loads().iter().map(|force| -force));
         o.energy = system.energy_with(&at);
+        contact_points(&self.mechanism, &at, &mut self.work, &mut o.contacts);
         o.work = y[self.layout.work.clone()].first().copied().unwrap_or(0.0);
         replace(&mut o.integrals, &y[self.layout.integrals.clone()]);
         Ok(())
+    }
+
+    /// The state vector of an observation; the memory of contacts becomes that of its time. What no later motion depends on is left
+    /// out: hops of a contact before it, loads of one's own with internals.
+    pub fn restore(&mut self, observation: &Observation) -> Vec<f64> {
+        let (o, layout) = (observation, self.layout.clone());
+        let mut y = vec![0.0; layout.len()];
+        y[layout.coordinates.clone()].copy_from_slice(&o.q);
+        y[layout.speeds.clone()].copy_from_slice(&o.v);
+        if let Some(work) = y[layout.work.clone()].first_mut() {
+            *work = o.work;
+        }
+        y[layout.integrals.clone()].copy_from_slice(&o.integrals);
+        let mut memory = vec![0.0; self.memory().len()];
+        let mut points = o.contacts.iter();
+        for (contact, place) in self.mechanism.contacts.iter().zip(self.mechanism.system.places()) {
+            let states = &mut y[layout.states.clone()][place.states.clone()];
+            let memory = &mut memory[place.memory.clone()];
+            contact.joint.restore(&mut points, states, memory);
+        }
+        self.set_memory(&memory);
+        y
+    }
+
+    /// Contact points of joints with clearance at `t` and state vector `y`.
+    pub fn contact_points(&mut self, t: f64, y: &[f64], points: &mut Vec<ContactPoint>) {
+        let at = self.layout.instant(t, y, &self.memory);
+        contact_points(&self.mechanism, &at, &mut self.work, points);
     }
 
     /// Names of the numbers of an [`Observation`] in the order of [`Observation::write`], as result files have them.
@@ -86,12 +119,32 @@ impl Simulation {
             }
         }
         names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
+        for contact in &mechanism.contacts {
+            for point in 0..contact.joint.points() {
+                let name = contact.point_name(point);
+                names.extend(contact.joint.columns().map(|column| format!("contact.{name}.{column}")));
+            }
+        }
         names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
         if !mechanism.loops.is_empty() {
             names.extend(["position", "velocity"].map(|c| format!("violation.{c}")));
         }
         names
     }
+}
+
+/// Clearances are the first of the loads with internals.
+fn contact_points(mechanism: &Mechanism, at: &Instant<'_>, work: &mut Workspace, points: &mut Vec<ContactPoint>) {
+    points.clear();
+    if mechanism.contacts.is_empty() {
+        return;
+    }
+    let mut contacts = mechanism.contacts.iter();
+    mechanism.system.ask_loads(at, work, |_, motion, _| {
+        if let Some(contact) = contacts.next() {
+            points.extend((0..contact.joint.points()).map(|point| contact.joint.observe(motion, point)));
+        }
+    });
 }
 
 fn replace(target: &mut Vec<f64>, source: &[f64]) {
@@ -116,6 +169,9 @@ impl Observation {
             }
         }
         row.extend(&self.friction);
+        for point in &self.contacts {
+            point.write(row);
+        }
         let energy = &self.energy;
         row.extend([energy.kinetic, energy.potential, energy.elastic, self.work]);
         if !self.multipliers.is_empty() {

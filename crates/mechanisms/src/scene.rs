@@ -21,4 +21,6 @@ pub struct Scene {
     pub reactions: bool,
     /// Coordinate whose speed stands for the run: the crank.
     pub crank: String,
+    /// Coordinate whose motion is the result, if one is.
+    pub output: Option<String>,
 }

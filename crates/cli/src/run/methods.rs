@@ -1,7 +1,9 @@
 //! The integration methods by name, and the tolerances or steps that go with them.
 
-use linkdyn_mechanisms::Simulation;
-use linkdyn_mechanisms::integrators::{Adams, Corrector, Dop853, DormandPrince5, Method, Newmark, Rk4, Settings};
+use linkdyn_mechanisms::integrators::{
+    Adams, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Settings,
+};
+use linkdyn_mechanisms::{Simulation, Switching};
 use serde::Serialize;
 
 use crate::args::RunArgs;
@@ -20,19 +22,25 @@ pub struct Plan {
     pub step: Option<f64>,
     /// Corrector iterations a step, where they are fixed.
     pub iterations: Option<u32>,
+    /// When contacts are made and lost: `located` or `at_steps`.
+    pub switching: &'static str,
 }
 
 /// Methods with error control, and methods of fixed step.
-const ADAPTIVE: [&str; 3] = ["adams", "dop853", "dopri5"];
+const ADAPTIVE: [&str; 4] = ["adams", "dop853", "dopri5", "radau5"];
 const FIXED: [&str; 2] = ["rk4", "newmark"];
 
 /// Default tolerance, relative and absolute \[rad, m, rad/s, m/s\].
 const TOLERANCE: f64 = 1e-12;
+/// Default tolerance of methods for stiff scenes, whose steps are of low order: 1e-12 would take them millions.
+const STIFF_TOLERANCE: f64 = 1e-9;
 /// Loosest tolerance taken without a word: the start of RSRRR is an unstable equilibrium, and a loose run may fall to the
 /// wrong side.
 const LOOSEST: f64 = 1e-4;
 /// Default fixed step \[s\].
 const STEP: f64 = 1e-4;
+/// Fixed step of the paper on clearance \[s\].
+const PUBLISHED_STEP: f64 = 5e-6;
 
 impl Plan {
     /// What the command line asks for.
@@ -40,7 +48,17 @@ impl Plan {
     /// # Errors
     /// Unknown methods, and options that do not go with the method.
     pub fn new(args: &RunArgs) -> Result<Self, CliError> {
-        let method = args.method.as_deref().unwrap_or("adams");
+        let method = match (&args.method, args.as_published) {
+            (None, true) => "rk4",
+            // Contacts and elastic links are stiff.
+            (None, false) if args.clearance.is_some() || args.flexible.is_some() => "radau5",
+            (None, false) => "adams",
+            (Some(name), false) => name,
+            (Some(_), true) => {
+                let message = "`--method` does not go with `--as-published`, which is rk4";
+                return Err(CliError::usage(message).with_hint("leave one of them out"));
+            }
+        };
         let fixed = FIXED.contains(&method);
         if !fixed && !ADAPTIVE.contains(&method) {
             return Err(CliError::unknown("method", method, ADAPTIVE.into_iter().chain(FIXED)));
@@ -51,7 +69,7 @@ impl Plan {
         if fixed && (args.rtol.is_some() || args.atol.is_some()) {
             return misplaced(
                 "--rtol/--atol",
-                "give its `--step`, or take an adaptive method: adams, dop853, dopri5",
+                "give its `--step`, or take an adaptive method: adams, dop853, dopri5, radau5",
             );
         }
         if !fixed && args.step.is_some() {
@@ -63,7 +81,8 @@ impl Plan {
         if method != "newmark" && args.iterations.is_some() {
             return misplaced("--iterations", "only newmark has a corrector to iterate");
         }
-        let rtol = args.rtol.unwrap_or(TOLERANCE);
+        let usual = if method == "radau5" { STIFF_TOLERANCE } else { TOLERANCE };
+        let rtol = args.rtol.unwrap_or(usual);
         for (name, tolerance) in [("rtol", rtol), ("atol", args.atol.unwrap_or(rtol))] {
             if tolerance > LOOSEST {
                 let message = format!("{name} = {tolerance} is too loose: the result would mean nothing");
@@ -74,7 +93,11 @@ impl Plan {
             method: method.to_owned(),
             rtol: (!fixed).then_some(rtol),
             atol: (!fixed).then(|| args.atol.unwrap_or(rtol)),
-            step: fixed.then(|| args.step.unwrap_or(STEP)),
+            step: fixed.then(|| {
+                args.step
+                    .unwrap_or(if args.as_published { PUBLISHED_STEP } else { STEP })
+            }),
+            switching: if args.as_published { "at_steps" } else { "located" },
             iterations: args.iterations,
         })
     }
@@ -86,6 +109,8 @@ impl Plan {
         match self.method.as_str() {
             "dop853" => Box::new(Dop853::default()),
             "dopri5" => Box::new(DormandPrince5::default()),
+            // df/dy costs a dozen evaluations here and changes slowly.
+            "radau5" => Box::new(Radau5::default().with_reuse(0.2)),
             "rk4" => Box::new(Rk4::new(step)),
             "newmark" => Box::new(Newmark::new(step, self.corrector())),
             _ => Box::new(Adams::default()),
@@ -102,10 +127,15 @@ impl Plan {
         }
     }
 
-    /// Drift of the loops that a step may leave: a tenth of the tolerance, so that it never shows beside the error.
-    #[must_use]
-    pub fn drift_tolerance(&self) -> f64 {
-        0.1 * self.atol.unwrap_or(0.0)
+    /// Makes a simulation keep its loops and switch its contacts as planned. Drift that a step may leave is a tenth of the
+    /// tolerance, so that it never shows beside the error; with drift terms nothing is projected.
+    pub fn set_up(&self, simulation: &mut Simulation) {
+        if self.switching == "at_steps" {
+            simulation.set_switching(Switching::AtSteps);
+            simulation.set_drift_tolerance(f64::INFINITY);
+        } else {
+            simulation.set_drift_tolerance(0.1 * self.atol.unwrap_or(0.0));
+        }
     }
 
     /// Tolerances for a simulation.

@@ -11,9 +11,9 @@ use std::time::Instant;
 
 use linkdyn_mechanisms::dynamics::{Formulation, ReactionSolver};
 use linkdyn_mechanisms::integrators::Integration;
-use linkdyn_mechanisms::{MOST_ROWS, Mechanism, Observation, RunError, Scene, Simulation, State, run_watched};
+use linkdyn_mechanisms::{MOST_ROWS, Mechanism, RunError, Scene, Seen, Simulation, State, run_watched};
 
-use crate::args::{FormulationArg, RunArgs};
+use crate::args::{ClearanceArg, FormulationArg, RunArgs};
 use crate::errors::CliError;
 use crate::interrupt::Interrupt;
 use crate::output;
@@ -42,10 +42,7 @@ struct Prepared {
 /// Wrong usage, a scene that cannot start, a run that ends early (its rows are written), a folder that cannot be written.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let plan = Plan::new(args)?;
-    let variant = Variant {
-        friction: args.friction,
-        friction_scale: args.friction_scale,
-    };
+    let variant = Variant::new(args);
     let prepared = prepare(args, &variant)?;
     let until = args.until.unwrap_or(prepared.scene.until);
     let grid = (until, args.every.unwrap_or(until / ROWS));
@@ -59,45 +56,54 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let target = args
         .out
         .clone()
-        .unwrap_or_else(|| default_folder(&prepared.scene, &variant));
+        .unwrap_or_else(|| default_folder(&args.scene, &variant));
 
     let mut folder = RunFolder::create(&target)?;
     let interrupt = Interrupt::install()?;
     let simulation = Simulation::new(&prepared.mechanism);
     let columns = simulation.columns(prepared.scene.reactions);
     let mut table = folder.table("states.csv", &columns)?;
+    let mut events = folder.events("events.csv")?;
+    let mut stops = prepared.mechanism.system().stop_times();
+    stops.retain(|&t| t > 0.0);
+    let mut stops = stops.into_iter().peekable();
+    let contact_names: Vec<String> = prepared.mechanism.contact_names().collect();
     let mut progress = Progress::new(&prepared.scene.name, 0.0, until, args.quiet || args.json);
     let mut row = Vec::new();
     let mut write_error = None;
-    let (record, mut outcome, ended) = simulate(
-        &prepared,
-        &plan,
-        grid,
-        |o| {
-            o.write(prepared.scene.reactions, &mut row);
-            if let Err(error) = table.row(&row) {
-                write_error = Some(error);
-                return ControlFlow::Break(());
+    let (record, mut outcome, ended) = simulate(&prepared, &plan, grid, |seen| {
+        let written = match seen {
+            Seen::Row(o) => {
+                o.write(prepared.scene.reactions, &mut row);
+                table.row(&row)
             }
-            ControlFlow::Continue(())
-        },
-        |t| {
-            progress.set(t);
-            flow(&interrupt)
-        },
-    )?;
+            Seen::Contact { t, event } => {
+                let kind = if event.made { "contact_made" } else { "contact_lost" };
+                let name = contact_names.get(event.point).map_or("", String::as_str);
+                events.event(*t, kind, name, Some(event.speed))
+            }
+            Seen::Step { t, .. } => {
+                progress.set(*t);
+                match stops.next_if(|stop| stop <= t) {
+                    Some(stop) => events.event(stop, "stop", "drive", None),
+                    None => Ok(()),
+                }
+            }
+        };
+        if let Err(error) = written {
+            write_error = Some(error);
+            return ControlFlow::Break(());
+        }
+        flow(&interrupt)
+    })?;
     drop(progress);
     if let Some(error) = write_error {
         return Err(error.into());
     }
     outcome.rows = table.finish()?;
-    write_stops(
-        &mut folder,
-        &prepared.mechanism,
-        record.t.last().copied().unwrap_or(0.0),
-    )?;
-    let other = compare(args, &plan, grid, &variant, &record, &interrupt);
-    draw(&prepared, &variant, &record, other.as_ref(), &mut folder)?;
+    events.finish()?;
+    let others = compare(args, &plan, grid, &variant, &record, &interrupt);
+    draw(&prepared, &args.scene, &variant, &record, &others, &mut folder)?;
 
     let summary = report::summary(&prepared.scene, &prepared.mechanism, &record, &outcome);
     let manifest = report::manifest(&prepared.scene, &plan, grid, &columns, &summary, &outcome);
@@ -118,7 +124,7 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
 
 /// Builds the scene with what the command line switched, and closes its loops.
 fn prepare(args: &RunArgs, variant: &Variant) -> Result<Prepared, CliError> {
-    let mut scene = scenes::find(&args.scene)?.scene(variant);
+    let mut scene = scenes::find(&args.scene)?.scene(variant)?;
     if let Some(sweeps) = args.friction_sweeps {
         scene.linkage.reaction_solver = ReactionSolver::Sweeps { sweeps };
     }
@@ -140,16 +146,15 @@ fn prepare(args: &RunArgs, variant: &Variant) -> Result<Prepared, CliError> {
     })
 }
 
-/// Runs a scene; `observe` sees each output and `watch` each step first. The inner result tells why the run ended early, if it did.
+/// Runs a scene; `watch` sees all there is to see. The inner result tells why the run ended early, if it did.
 fn simulate(
     prepared: &Prepared,
     plan: &Plan,
     grid: (f64, f64),
-    mut observe: impl FnMut(&Observation) -> ControlFlow<()>,
-    watch: impl FnMut(f64) -> ControlFlow<()>,
+    mut watch: impl FnMut(&Seen<'_>) -> ControlFlow<()>,
 ) -> Result<(Record, Outcome, Result<(), RunError>), CliError> {
     let mut simulation = Simulation::new(&prepared.mechanism);
-    simulation.set_drift_tolerance(plan.drift_tolerance());
+    plan.set_up(&mut simulation);
     let y = simulation.state_vector(&prepared.start);
     let settings = plan.settings(&simulation);
     let stops = prepared.mechanism.system().stop_times();
@@ -160,16 +165,10 @@ fn simulate(
         .map_err(|error| CliError::usage("the integration cannot begin").with_source(error))?;
     let mut record = Record::default();
     let begun = Instant::now();
-    let ended = run_watched(
-        &mut integration,
-        grid.0,
-        grid.1,
-        |o| {
-            record.push(o);
-            observe(o)
-        },
-        watch,
-    );
+    let ended = run_watched(&mut integration, grid.0, grid.1, |mut seen| {
+        record.see(&mut seen, grid.1);
+        watch(&seen)
+    });
     let outcome = Outcome {
         statistics: integration.statistics(),
         counters: integration.problem().counters(),
@@ -190,8 +189,8 @@ fn flow(interrupt: &Interrupt) -> ControlFlow<()> {
     }
 }
 
-/// The other variant of the scene, friction on or off, as far as it runs over the time of `record`; it is there for
-/// comparison only, and so none of its failures is one of the run.
+/// Other variants of the scene, as far as they run over the time of `record`; they are there for comparison only, and so none
+/// of their failures is one of the run.
 fn compare(
     args: &RunArgs,
     plan: &Plan,
@@ -199,63 +198,71 @@ fn compare(
     variant: &Variant,
     record: &Record,
     interrupt: &Interrupt,
-) -> Option<Record> {
-    let friction = !variant.friction;
-    let prepared = prepare(args, &Variant { friction, ..*variant }).ok()?;
-    let reached = (*record.t.last()?, grid.1);
-    let go_on = |_: &Observation| ControlFlow::Continue(());
-    let (other, ..) = simulate(&prepared, plan, reached, go_on, |_| flow(interrupt)).ok()?;
-    Some(other)
+) -> Vec<(Variant, Record)> {
+    let (Ok(entry), Some(&reached)) = (scenes::find(&args.scene), record.t.last()) else {
+        return Vec::new();
+    };
+    let others = entry.beside(variant).into_iter().filter_map(|other| {
+        let prepared = prepare(args, &other).ok()?;
+        let (record, ..) = simulate(&prepared, plan, (reached, grid.1), |_| flow(interrupt)).ok()?;
+        Some((other, record))
+    });
+    others.collect()
 }
 
-/// Draws the run together with the other variant of the scene.
+/// Draws the run together with others.
 fn draw(
     prepared: &Prepared,
+    scene: &str,
     variant: &Variant,
     record: &Record,
-    other: Option<&Record>,
+    others: &[(Variant, Record)],
     folder: &mut RunFolder,
 ) -> Result<(), CliError> {
+    let entry = scenes::find(scene)?;
     let names = Names {
         title: &prepared.scene.name.to_uppercase(),
         coordinates: prepared.mechanism.coordinate_names().collect(),
         joints: prepared.mechanism.joint_names().collect(),
+        contacts: prepared.mechanism.contact_names().collect(),
+        output: prepared.scene.output.as_deref(),
+        reactions: prepared.scene.reactions,
+        clearances: prepared.mechanism.clearances().collect(),
     };
-    let curve = |friction: bool, record| {
-        let (label, style) = if friction {
-            ("joint friction", 1)
-        } else {
-            ("ideal joints", 0)
-        };
-        Curve { label, style, record }
-    };
-    let mut curves = vec![curve(variant.friction, record)];
-    curves.extend(other.map(|other| curve(!variant.friction, other)));
-    curves.sort_by_key(|curve| curve.style);
+    let all = others.iter().map(|(variant, record)| (variant, record));
+    let all = all.chain([(variant, record)]);
+    let mut curves: Vec<Curve<'_>> = all
+        .map(|(variant, record)| Curve {
+            label: entry.label(variant),
+            style: 0,
+            record,
+        })
+        .collect();
+    // The same variant has the same style in every picture, whichever was run: the simplest comes first.
+    curves.sort_by_key(|curve| curve.label.clone());
+    curves.sort_by_key(|curve| (curve.record.contacts.len(), curve.label.len()));
+    for (style, curve) in curves.iter_mut().enumerate() {
+        curve.style = style;
+    }
     pictures::draw(folder, &names, &curves)
 }
 
-/// The times on which steps ended because a load has a kink there.
-fn write_stops(folder: &mut RunFolder, mechanism: &Mechanism, end: f64) -> Result<(), CliError> {
-    let mut events = folder.events("events.csv")?;
-    for time in mechanism
-        .system()
-        .stop_times()
-        .into_iter()
-        .filter(|&t| t > 0.0 && t <= end)
-    {
-        events.event(time, "stop", "drive", None)?;
+fn default_folder(scene: &str, variant: &Variant) -> PathBuf {
+    let mut name = scene.to_owned();
+    for (given, part) in [
+        (variant.friction == Some(true), "friction".to_owned()),
+        (variant.clearance == Some(ClearanceArg::Planar), "planar".to_owned()),
+        (variant.clearance == Some(ClearanceArg::Spatial), "spatial".to_owned()),
+        (
+            variant.flexible.is_some(),
+            format!("flexible{}", variant.flexible.unwrap_or_default()),
+        ),
+        (variant.friction == Some(false), "no-friction".to_owned()),
+    ] {
+        if given {
+            name = format!("{name}-{part}");
+        }
     }
-    events.finish()?;
-    Ok(())
-}
-
-fn default_folder(scene: &Scene, variant: &Variant) -> PathBuf {
-    let name = if variant.friction {
-        format!("{}-friction", scene.name)
-    } else {
-        scene.name.clone()
-    };
     PathBuf::from("out").join(name)
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use linkdyn_mechanisms::Observation;
+use linkdyn_mechanisms::{Observation, Seen, Tally};
 
 /// Curves over time, one point an output.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +13,8 @@ pub struct Record {
     pub q: Vec<Vec<f64>>,
     /// Speeds.
     pub v: Vec<Vec<f64>>,
+    /// Accelerations at the ends of steps.
+    pub accelerations: Vec<StepCurve>,
     /// Size of each joint's force \[N\].
     pub force: Vec<Vec<f64>>,
     /// Size of each joint's torque \[N m\].
@@ -29,11 +31,106 @@ pub struct Record {
     pub friction: Vec<f64>,
     /// Work done up to the last output \[J\].
     pub work: f64,
+    /// Figures of contacts.
+    pub tally: Tally,
+    /// Contact points in time, one curve each.
+    pub contacts: Vec<ContactCurve>,
+    /// Integrals over time of the squares of all accelerations, by steps.
+    squares: Vec<f64>,
+    /// Accelerations and time at the end of the step before.
+    before: (f64, Vec<f64>),
 }
 
+/// A quantity in time, by steps; where steps are many only the largest value between two points is kept.
+#[derive(Clone, Debug, Default)]
+pub struct StepCurve {
+    /// Times \[s\] and values.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl StepCurve {
+    fn push(&mut self, t: f64, value: f64, spacing: f64) {
+        let close = self.points.len() > 1 && t - self.points[self.points.len() - 2].0 < spacing;
+        match self.points.last_mut() {
+            Some(last) if close => {
+                last.0 = t;
+                if value.abs() > last.1.abs() {
+                    last.1 = value;
+                }
+            }
+            _ => self.points.push((t, value)),
+        }
+    }
+}
+
+/// A contact point in time.
+#[derive(Clone, Debug, Default)]
+pub struct ContactCurve {
+    /// Normal force \[N\].
+    pub normal: StepCurve,
+    /// Centre of the journal in the bearing \[m\].
+    pub journal: Vec<(f64, f64)>,
+}
+
+/// Most points of a curve by steps between two outputs.
+const STEP_POINTS: f64 = 100.0;
+
 impl Record {
+    /// Takes in what a run shows; `every` is the time between outputs \[s\].
+    pub fn see(&mut self, seen: &mut Seen<'_>, every: f64) {
+        self.tally.see(seen);
+        match seen {
+            Seen::Row(observation) => self.push(observation),
+            Seen::Step {
+                t, rates, simulation, ..
+            } => {
+                let layout = simulation.layout();
+                let rates = &rates[layout.speeds.clone()];
+                let (before, old) = (self.before.0, &mut self.before.1);
+                if !old.is_empty() {
+                    self.squares.resize(rates.len(), 0.0);
+                    for ((sum, a), b) in self.squares.iter_mut().zip(&*old).zip(rates) {
+                        // Exact for an acceleration that is straight over the step.
+                        *sum += (*t - before) * (a * a + a * b + b * b) / 3.0;
+                    }
+                }
+                old.clear();
+                old.extend_from_slice(rates);
+                self.before.0 = *t;
+                let spacing = every / STEP_POINTS;
+                self.accelerations.resize_with(rates.len(), StepCurve::default);
+                for (curve, &a) in self.accelerations.iter_mut().zip(rates) {
+                    curve.push(*t, a, spacing);
+                }
+                self.follow_contacts(*t, spacing);
+            }
+            Seen::Contact { .. } => {}
+        }
+    }
+
+    fn follow_contacts(&mut self, t: f64, spacing: f64) {
+        self.contacts
+            .resize_with(self.tally.last().len(), ContactCurve::default);
+        for (curve, point) in self.contacts.iter_mut().zip(self.tally.last()) {
+            let count = curve.normal.points.len();
+            curve.normal.push(t, point.normal, spacing);
+            if curve.normal.points.len() == count {
+                curve.journal.pop();
+            }
+            curve.journal.push(point.journal.into());
+        }
+    }
+
+    /// Root of the mean square of acceleration `k` over the steps.
+    #[must_use]
+    pub fn acceleration_rms(&self, k: usize) -> Option<f64> {
+        let span = self.tally.span.1 - self.tally.span.0;
+        let square = self.squares.get(k)?;
+        (span > 0.0).then(|| (square / span).sqrt())
+    }
+
     /// Adds an output.
-    pub fn push(&mut self, o: &Observation) {
+    fn push(&mut self, o: &Observation) {
         self.t.push(o.t);
         append(&mut self.q, o.q.iter().copied());
         append(&mut self.v, o.v.iter().copied());

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use linkdyn_mechanisms::dynamics::Counters;
 use linkdyn_mechanisms::integrators::Statistics;
-use linkdyn_mechanisms::{Mechanism, Scene, Worst};
+use linkdyn_mechanisms::{Mechanism, Scene, Tally, Worst};
 use serde_json::{Value, json};
 
 use crate::machine::{Machine, Program};
@@ -52,6 +52,15 @@ pub fn summary(scene: &Scene, mechanism: &Mechanism, record: &Record, outcome: &
     for (name, friction) in mechanism.friction_names().zip(&record.friction) {
         table.entry(&format!("peak friction on {name}"), Cell::number(*friction), "N m");
     }
+    if let Some(name) = &scene.output
+        && let Some(rms) = mechanism
+            .coordinate_names()
+            .position(|known| known == name)
+            .and_then(|k| record.acceleration_rms(k))
+    {
+        table.entry(&format!("acceleration of {name}, rms"), Cell::number(rms), "m/s^2");
+    }
+    contacts(&mut table, mechanism, &record.tally);
     table.entry("work of all loads", Cell::number(record.work), "J");
     table.entry("energy error, largest", Cell::number(record.energy_error), "J");
     table.entry(
@@ -83,6 +92,28 @@ pub fn summary(scene: &Scene, mechanism: &Mechanism, record: &Record, outcome: &
     table.entry("rows", Cell::count(outcome.rows), "");
     table.entry("wall time", Cell::number(outcome.wall.as_secs_f64()), "s");
     table
+}
+
+/// What happened in the joints with clearance.
+fn contacts(table: &mut Table, mechanism: &Mechanism, tally: &Tally) {
+    let (begin, end) = tally.span;
+    for (name, point) in mechanism.contact_names().zip(&tally.points) {
+        let mut entry = |what: &str, value: f64, unit: &str| {
+            table.entry(&format!("{what} in {name}"), Cell::number(value), unit);
+        };
+        entry("time share in contact", point.contact_time(end) / (end - begin), "");
+        entry("mean normal force while in contact", point.mean_force(end), "N");
+        entry("rms normal force while in contact", point.rms_force(end), "N");
+        entry("peak normal force", point.peak_force, "N");
+        entry("greatest penetration", point.greatest_depth, "m");
+        entry("fastest impact", point.fastest, "m/s");
+        entry("energy lost in the normal direction", point.integrals.damping_loss, "J");
+        entry("energy lost in friction", point.integrals.friction_loss, "J");
+        if let Some(restitution) = point.restitution() {
+            entry("separation over approach, mean", restitution, "");
+        }
+        table.entry(&format!("impacts in {name}"), Cell::count(point.impacts), "");
+    }
 }
 
 /// The manifest: the scene as it was run, method, counters, worst figures, program, machine.
@@ -117,6 +148,8 @@ pub fn manifest(
             "jacobians": s.jacobians,
             "factorisations": s.factorisations,
             "events": s.events,
+            "root_evaluations": s.root_evaluations,
+            "steps_made_again_at_events": s.relocations,
             "reaction_sweeps": c.reaction_sweeps,
             "friction_iterations": c.reaction_iterations,
             "friction_continuations": c.reaction_continuations,

@@ -116,6 +116,7 @@ pub fn rsrrr(variant: &Rsrrr) -> Scene {
         until: 5.0,
         reactions: true,
         crank: "psi11".into(),
+        output: None,
     }
 }
 

@@ -1,8 +1,8 @@
-//! The RSRRR scene, run by any method, with all it observes.
+//! Scenes of the catalogue, run by any method, with all that is observed.
 
 use linkdyn_integrators::{Integration, Method, Statistics};
-use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
-use linkdyn_mechanisms::{Mechanism, Observation, RunError, Scene, Simulation, State, run};
+use linkdyn_mechanisms::catalogue::{Rsrrr, Rsup, rsrrr, rsup};
+use linkdyn_mechanisms::{ContactEvent, Mechanism, Observation, RunError, Scene, Seen, Simulation, State, run_watched};
 use std::ops::ControlFlow;
 
 /// A scene, built and closed.
@@ -19,11 +19,19 @@ pub struct Ready {
 ///
 /// # Panics
 /// If the scene does not build or close.
-pub fn ready(friction: bool, friction_scale: f64) -> Ready {
+pub fn ready_rsrrr(friction: bool, friction_scale: f64) -> Ready {
     prepare(rsrrr(&Rsrrr {
         friction,
         friction_scale,
     }))
+}
+
+/// A variant of RSUP.
+///
+/// # Panics
+/// If there is none such, or if it does not build or close.
+pub fn ready_rsup(variant: &Rsup) -> Ready {
+    prepare(rsup(variant).expect("there is such a variant"))
 }
 
 /// Builds a scene and closes its loops.
@@ -44,6 +52,8 @@ pub fn prepare(scene: Scene) -> Ready {
 pub struct Finished {
     /// All rows.
     pub rows: Vec<Observation>,
+    /// Contacts made and lost, with their times.
+    pub contacts: Vec<(f64, ContactEvent)>,
     /// Costs.
     pub statistics: Statistics,
     /// The simulation as it was left.
@@ -77,13 +87,18 @@ pub fn simulate_with(
     let stops = ready.mechanism.system().stop_times();
     let integration = Integration::new(simulation, method, 0.0, &y, settings).expect("valid settings");
     let mut integration = integration.with_stops(&stops).expect("finite stops");
-    let mut rows = Vec::new();
-    let end = run(&mut integration, until, every, |o| {
-        rows.push(o.clone());
+    let (mut rows, mut contacts) = (Vec::new(), Vec::new());
+    let end = run_watched(&mut integration, until, every, |seen| {
+        match seen {
+            Seen::Row(o) => rows.push(o.clone()),
+            Seen::Contact { t, event } => contacts.push((t, event)),
+            Seen::Step { .. } => {}
+        }
         ControlFlow::Continue(())
     });
     Finished {
         rows,
+        contacts,
         statistics: integration.statistics(),
         simulation: integration.problem().clone(),
         end,

@@ -1,0 +1,215 @@
+//! From a description in any order to tree, closures and loads.
+
+use crate::clearance::ClearanceJoint;
+use crate::drive::CoordinateDrives;
+use crate::error::BuildError;
+use crate::linkage::{JointItem, Linkage, Mount};
+use crate::mechanism::{Contact, Mechanism, NamedJoint, NamedLink, NamedLoop};
+use crate::spring::{self, JointSprings};
+use linkdyn_dynamics::{Description, Load, ReactionLoad, System, SystemError};
+use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Tree};
+use std::sync::Arc;
+
+impl Linkage {
+    /// Checks everything and sets up the equations of motion.
+    ///
+    /// # Errors
+    /// [`BuildError`] that names the item, its value and what would be right.
+    pub fn build(&self) -> Result<Mechanism, BuildError> {
+        self.check_names()?;
+        self.check_items()?;
+        let placed = self.place()?;
+
+        let (mut coordinates, mut speeds) = (Vec::new(), Vec::new());
+        let mut joints = Vec::new();
+        let mut loads: Vec<Arc<dyn Load>> = Vec::new();
+        let mut reaction_loads: Vec<(LinkId, Arc<dyn ReactionLoad>)> = Vec::new();
+        let mut springs = Vec::new();
+        for (&index, &node) in placed.order.iter().zip(&placed.nodes) {
+            let item = &self.joints[index];
+            let (q, v) = (placed.tree.coordinate_range(node), placed.tree.speed_range(node));
+            if !item.drives.is_empty() {
+                loads.push(Arc::new(CoordinateDrives {
+                    coordinate: q.start,
+                    speed: v.start,
+                    drives: item.drives.clone(),
+                }));
+            }
+            springs.extend(item.springs.iter().enumerate().map(|(k, &spring)| spring::Placed {
+                coordinate: q.start + k,
+                speed: v.start + k,
+                spring,
+            }));
+            if let Some(friction) = &item.friction {
+                reaction_loads.push((node, Arc::new(friction.clone())));
+            }
+            coordinates.extend(item.coordinates());
+            speeds.extend(item.speeds());
+            joints.push(NamedJoint {
+                name: item.name.clone(),
+                link: node,
+                to_link: item.successor_frame().inverse(),
+                speed: v.start,
+                has_friction: item.friction.is_some(),
+            });
+        }
+        if !springs.is_empty() {
+            loads.push(Arc::new(JointSprings(springs)));
+        }
+        let (mut closures, mut centred) = (Vec::new(), Vec::new());
+        let mut contacts = Vec::new();
+        for cut in &self.cuts {
+            let (one, two) = (placed.attachment(&cut.predecessor), placed.attachment(&cut.successor));
+            let ideal = Closure::new(&placed.tree, one, two, &cut.joint);
+            match (&cut.clearance, &cut.joint) {
+                (Some(clearance), Joint::Revolute { axis }) => {
+                    let joint = Arc::new(ClearanceJoint::new(clearance, &ideal, **axis));
+                    closures.push(joint.closure(&placed.tree, &ideal));
+                    contacts.push(Contact {
+                        name: cut.name.clone(),
+                        joint: joint.clone(),
+                    });
+                    loads.push(joint);
+                }
+                _ => closures.push(ideal.clone()),
+            }
+            centred.push(ideal);
+        }
+        // After the contacts, so that these come first among the loads with internals.
+        loads.extend(self.loads.iter().cloned());
+        let loops = self.cuts.iter().zip(&closures).map(|(cut, closure)| NamedLoop {
+            name: cut.name.clone(),
+            components: closure.component_names(),
+        });
+        let loops = loops.collect();
+        let inertias = placed.order.iter().map(|&index| {
+            let item = &self.joints[index];
+            let (_, inertia) = &self.links[item.successor.link.0.unwrap_or_default()];
+            inertia.moved(&item.successor_frame().inverse())
+        });
+        let links = self.links.iter().enumerate().map(|(k, (name, _))| NamedLink {
+            name: name.clone(),
+            frame: placed.frames[k],
+        });
+        let description = Description {
+            inertias: inertias.collect(),
+            closures,
+            loads,
+            reaction_loads,
+            baumgarte: self.baumgarte,
+            formulation: self.formulation,
+            reaction_solver: self.reaction_solver,
+            ..Description::new(placed.tree.clone(), Vec::new(), self.gravity)
+        };
+        let system = System::new(description).map_err(|error| self.name_link(error, &placed))?;
+        Ok(Mechanism {
+            system: Arc::new(system),
+            links: links.collect(),
+            joints,
+            loops,
+            centred,
+            contacts,
+            coordinates,
+            speeds,
+        })
+    }
+
+    /// Hangs the links on the ground one by one, whatever the order in which they were described.
+    fn place(&self) -> Result<Placed, BuildError> {
+        let mut placed = Placed {
+            tree: Tree::new(),
+            order: Vec::new(),
+            nodes: Vec::new(),
+            frames: vec![None; self.links.len()],
+        };
+        for (k, joint) in self.joints.iter().enumerate() {
+            let carried = |other: &&JointItem| other.successor.link == joint.successor.link;
+            if let Some(first) = self.joints[..k].iter().find(carried) {
+                return Err(BuildError::CarriedTwice {
+                    link: self.link_name(joint.successor.link),
+                    first: first.name.clone(),
+                    second: joint.name.clone(),
+                });
+            }
+        }
+        loop {
+            let next = self.joints.iter().enumerate().find(|(k, joint)| {
+                let reached = match joint.predecessor.link.0 {
+                    None => true,
+                    Some(link) => placed.frames[link].is_some(),
+                };
+                reached && !placed.order.contains(k)
+            });
+            let Some((k, item)) = next else { break };
+            let base = placed.attachment(&Mount {
+                link: item.predecessor.link,
+                pose: item.predecessor_frame(),
+            });
+            let joint = item.aligned();
+            let node = placed
+                .tree
+                .attach(base.link, base.pose, joint)
+                .map_err(|source| BuildError::Joint {
+                    joint: item.name.clone(),
+                    source,
+                })?;
+            let frame = Attachment {
+                link: node,
+                pose: item.successor_frame().inverse(),
+            };
+            match item.successor.link.0 {
+                Some(link) => placed.frames[link] = Some(frame),
+                None => {
+                    return Err(BuildError::CarriedTwice {
+                        link: "ground".into(),
+                        first: "the ground itself".into(),
+                        second: item.name.clone(),
+                    });
+                }
+            }
+            placed.order.push(k);
+            placed.nodes.push(node);
+        }
+        match placed.frames.iter().position(Option::is_none) {
+            Some(link) => Err(BuildError::Disconnected {
+                link: self.links[link].0.clone(),
+            }),
+            None => Ok(placed),
+        }
+    }
+
+    fn name_link(&self, error: SystemError, placed: &Placed) -> BuildError {
+        match error {
+            SystemError::Inertia { link, source } => BuildError::Inertia {
+                link: self.link_name(self.joints[placed.order[link]].successor.link),
+                source,
+            },
+            other => BuildError::System(other),
+        }
+    }
+}
+
+/// The tree as far as it has grown.
+struct Placed {
+    tree: Tree,
+    /// Joints in the order in which they were attached.
+    order: Vec<usize>,
+    /// Their nodes.
+    nodes: Vec<LinkId>,
+    /// Frames of the links on the tree's nodes.
+    frames: Vec<Option<Attachment>>,
+}
+
+impl Placed {
+    fn attachment(&self, mount: &Mount) -> Attachment {
+        let ground = Attachment {
+            link: LinkId::GROUND,
+            pose: Pose::identity(),
+        };
+        let frame = mount.link.0.and_then(|k| self.frames[k]).unwrap_or(ground);
+        Attachment {
+            link: frame.link,
+            pose: frame.pose * mount.pose,
+        }
+    }
+}

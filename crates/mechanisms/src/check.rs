@@ -1,0 +1,150 @@
+//! What a description must not have: names used twice, frames that are no poses, parameters out of range.
+
+use crate::drive::Drive;
+use crate::error::BuildError;
+use crate::linkage::{CutItem, JointItem, Linkage};
+use crate::spring::Spring;
+use linkdyn_friction::{BearingModel, Characteristic};
+use linkdyn_kinematics::Joint;
+use std::collections::HashSet;
+
+impl Linkage {
+    pub(crate) fn check_names(&self) -> Result<(), BuildError> {
+        let mut seen = HashSet::new();
+        let links = self.links.iter().map(|(name, _)| name);
+        let joints = self.joints.iter().map(|joint| &joint.name);
+        let cuts = self.cuts.iter().map(|cut| &cut.name);
+        for group in [links.collect::<Vec<_>>(), joints.chain(cuts).collect()] {
+            seen.clear();
+            for name in group {
+                if !seen.insert(name.clone()) {
+                    return Err(BuildError::DuplicateName { name: name.clone() });
+                }
+            }
+        }
+        seen.clear();
+        for joint in &self.joints {
+            for coordinate in joint.coordinates() {
+                if !seen.insert(coordinate.clone()) {
+                    return Err(BuildError::DuplicateName { name: coordinate });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn check_items(&self) -> Result<(), BuildError> {
+        if self.foreign {
+            return Err(BuildError::Foreign {
+                what: "the handle of a joint",
+                name: "drive, friction or coordinate_names".into(),
+            });
+        }
+        for (name, inertia) in &self.links {
+            let link = name.clone();
+            inertia
+                .validate()
+                .map_err(|source| BuildError::Inertia { link, source })?;
+        }
+        let joints = self
+            .joints
+            .iter()
+            .map(|j| (&j.name, &j.joint, &j.predecessor, &j.successor));
+        let cuts = self
+            .cuts
+            .iter()
+            .map(|c| (&c.name, &c.joint, &c.predecessor, &c.successor));
+        for (name, joint, predecessor, successor) in joints.chain(cuts) {
+            joint.validate().map_err(|source| BuildError::Joint {
+                joint: name.clone(),
+                source,
+            })?;
+            for (side, mount) in [("predecessor", predecessor), ("successor", successor)] {
+                if mount.link.0.is_some_and(|k| k >= self.links.len()) {
+                    let name = name.clone();
+                    return Err(BuildError::Foreign { what: side, name });
+                }
+                let defect = mount.pose.defect();
+                if defect.is_nan() || defect > 1e-9 {
+                    let joint = name.clone();
+                    return Err(BuildError::Mount { joint, side, defect });
+                }
+            }
+            if predecessor.link == successor.link {
+                return Err(BuildError::SelfJoint {
+                    joint: name.clone(),
+                    link: self.link_name(successor.link),
+                });
+            }
+        }
+        self.cuts.iter().try_for_each(CutItem::check)?;
+        self.joints.iter().try_for_each(JointItem::check)
+    }
+}
+
+impl CutItem {
+    fn check(&self) -> Result<(), BuildError> {
+        let Some(clearance) = &self.clearance else {
+            return Ok(());
+        };
+        let joint = || self.name.clone();
+        if !matches!(self.joint, Joint::Revolute { .. }) {
+            return Err(BuildError::ClearanceKind { joint: joint() });
+        }
+        let checked = clearance.validate();
+        checked.map_err(|source| BuildError::Clearance { joint: joint(), source })
+    }
+}
+
+impl JointItem {
+    fn check(&self) -> Result<(), BuildError> {
+        let joint = || self.name.clone();
+        let coordinates = self.joint.coordinates();
+        if let Some(names) = &self.coordinate_names
+            && names.len() != coordinates
+        {
+            return Err(BuildError::CoordinateNames {
+                joint: joint(),
+                expected: coordinates,
+                found: names.len(),
+            });
+        }
+        let needs_one = [
+            (!self.drives.is_empty(), "a drive"),
+            (self.friction.is_some(), "friction"),
+        ];
+        if let Some((_, what)) = needs_one.into_iter().find(|(there, _)| *there && coordinates != 1) {
+            return Err(BuildError::NotOneCoordinate {
+                what,
+                joint: joint(),
+                coordinates,
+            });
+        }
+        if !self.springs.is_empty() && (self.springs.len() != coordinates || self.joint.speeds() != coordinates) {
+            return Err(BuildError::Springs {
+                joint: joint(),
+                coordinates,
+                speeds: self.joint.speeds(),
+                found: self.springs.len(),
+            });
+        }
+        let faults = self.drives.iter().filter_map(Drive::fault);
+        let faults = faults.chain(self.springs.iter().filter_map(Spring::fault));
+        if let Some((parameter, value, expected)) = { faults }.next() {
+            return Err(BuildError::Parameter {
+                joint: joint(),
+                parameter,
+                value,
+                expected,
+            });
+        }
+        if let Some(friction) = &self.friction {
+            let checked = friction
+                .characteristic
+                .validate()
+                .and_then(|()| friction.bearing.validate());
+            checked.map_err(|source| BuildError::Friction { joint: joint(), source })?;
+        }
+        Ok(())
+    }
+}

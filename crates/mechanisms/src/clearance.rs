@@ -1,0 +1,493 @@
+//! Clearance in a cut revolute joint: a journal that touches its bearing, as a load with states of its own.
+
+use linkdyn_contact::{
+    Centre, ContactLaw, Fit, ForcePoint, NormalForce, NormalModel, ParameterError as ContactError, Touch,
+};
+use linkdyn_dynamics::{Internals, Load, Loads, Motion};
+use linkdyn_friction::{Bristle, BristleModel, BristleStart, ParameterError as FrictionError};
+use linkdyn_kinematics::{Attachment, Closure, Positions, Row, Tree, Velocities, Wrench};
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Clearance of a cut revolute joint, in place of the equations that hold journal and bearing together.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Clearance {
+    /// Radii of hole and pin.
+    pub fit: Fit,
+    /// Which side of the cut has the hole.
+    pub bearing: Side,
+    /// What the two may do besides.
+    pub model: ClearanceModel,
+    /// Normal force over penetration and its rate. For the spatial model this is the law of the whole joint; each edge of the
+    /// bearing gets half of it.
+    pub law: ContactLaw,
+    /// Friction over sliding speed; none if absent.
+    pub friction: Option<Bristle>,
+    /// How deflected the bristle is when a contact is made.
+    pub bristle_start: BristleStart,
+    /// Where the forces act.
+    pub force_point: ForcePoint,
+}
+
+/// A side of a cut joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Side {
+    /// The predecessor.
+    Predecessor,
+    /// The successor.
+    Successor,
+}
+
+/// How a journal may move in its bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
+pub enum ClearanceModel {
+    /// The axes stay parallel and nothing moves along them: three equations are kept, and one contact in the plane.
+    Planar,
+    /// Only motion along the axis is prevented, by one equation; contact at the two edges of the bearing.
+    Spatial {
+        /// Length of the bearing \[m\].
+        length: f64,
+    },
+}
+
+/// What is wrong with a clearance.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ClearanceError {
+    /// A parameter of the contact law.
+    #[error("contact law: {0}")]
+    Law(#[from] ContactError),
+    /// A parameter of the bristle.
+    #[error("bristle: {0}")]
+    Bristle(#[from] FrictionError),
+    /// The bearing has no length.
+    #[error("length of the bearing is {0} m, but must be finite and greater than zero")]
+    Length(f64),
+}
+
+impl Clearance {
+    pub(crate) fn validate(&self) -> Result<(), ClearanceError> {
+        self.law.validate()?;
+        if let Some(bristle) = &self.friction {
+            bristle.validate()?;
+        }
+        match self.model {
+            ClearanceModel::Spatial { length } if !(length.is_finite() && length > 0.0) => {
+                Err(ClearanceError::Length(length))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// One contact point at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactPoint {
+    /// Penetration \[m\]; negative while journal and bearing are apart.
+    pub depth: f64,
+    /// Its rate \[m/s\].
+    pub rate: f64,
+    /// Normal force \[N\].
+    pub normal: f64,
+    /// Friction on the bearing against the tangent, and against the axis \[N\].
+    pub tangent: [f64; 2],
+    /// Bristle deflections along tangent and axis \[m\].
+    pub bristle: [f64; 2],
+    /// Speed of penetration at the beginning of the contact \[m/s\]; zero while apart.
+    pub impact_speed: f64,
+    /// Sliding speed of the bearing's surface along tangent and axis \[m/s\].
+    pub slip: [f64; 2],
+    /// Centre of the journal in the bearing, in the plane normal to its axis \[m\].
+    pub journal: [f64; 2],
+    /// Whether friction along the axis is there too.
+    pub axial: bool,
+}
+
+impl ContactPoint {
+    /// Writes the numbers of [`ClearanceJoint::columns`].
+    pub(crate) fn write(&self, row: &mut Vec<f64>) {
+        let [tangent, axial] = self.tangent;
+        let [bristle, axial_bristle] = self.bristle;
+        row.extend([self.depth, self.rate, self.normal, tangent, bristle, self.impact_speed]);
+        if self.axial {
+            row.extend([axial, axial_bristle]);
+        }
+    }
+}
+
+/// Integrals of one contact point over time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactIntegrals {
+    /// Energy lost in the normal direction \[J\].
+    pub damping_loss: f64,
+    /// Energy lost in friction \[J\].
+    pub friction_loss: f64,
+    /// Normal force over time \[N s\].
+    pub impulse: f64,
+    /// Square of the normal force over time \[N^2 s\].
+    pub square: f64,
+}
+
+impl ContactIntegrals {
+    pub(crate) const COUNT: usize = 4;
+
+    /// From the integrals of a load, from those of this point on.
+    pub(crate) fn read(values: &[f64]) -> Self {
+        let [damping_loss, friction_loss, impulse, square] =
+            [0, 1, 2, 3].map(|k| values.get(k).copied().unwrap_or(0.0));
+        Self {
+            damping_loss,
+            friction_loss,
+            impulse,
+            square,
+        }
+    }
+}
+
+/// What a contact point keeps between events.
+mod memory {
+    /// Speed of penetration at the beginning of the contact; zero while apart.
+    pub const IMPACT_SPEED: usize = 0;
+    /// Time at which the last contact was lost.
+    pub const LOST: usize = 1;
+    /// Number of hops in a row that were too short to matter.
+    pub const HOPS: usize = 2;
+    /// Gap that must open before the contact counts as lost.
+    pub const HOLD: usize = 3;
+    /// How many of these there are.
+    pub const COUNT: usize = 4;
+}
+
+/// A hop is short if impact speed times duration, about four times the greatest gap, is below this share of the clearance.
+const SHORT_HOP: f64 = 1e-3;
+/// After so many short hops in a row the contact is held: it counts as lost only when a gap of [`HELD_GAP`] opens, and until then the
+/// force law, which is continuous and zero across a gap, goes on without events.
+const HOPS: f64 = 32.0;
+/// Gap that ends a held contact, as a share of the clearance.
+const HELD_GAP: f64 = 1e-2;
+
+/// A joint with clearance as a load.
+#[derive(Debug)]
+pub(crate) struct ClearanceJoint {
+    pub clearance: Clearance,
+    /// Frame with the hole, and frame with the pin.
+    bearing: Attachment,
+    journal: Attachment,
+    /// The joint's axis in both frames.
+    axis: Vector3<f64>,
+    /// Two directions normal to it, in the frame with the hole.
+    plane: [Vector3<f64>; 2],
+}
+
+/// A journal in its bearing, in motion.
+struct Pair {
+    bearing: Centre,
+    journal: Centre,
+}
+
+impl ClearanceJoint {
+    /// In place of the ideal closure of a revolute joint along `axis` of both frames.
+    pub fn new(clearance: &Clearance, ideal: &Closure, axis: Vector3<f64>) -> Self {
+        let (one, two) = (*ideal.predecessor(), *ideal.successor());
+        let (bearing, journal) = match clearance.bearing {
+            Side::Predecessor => (one, two),
+            Side::Successor => (two, one),
+        };
+        let away = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+        let first = axis.cross(&away).normalize();
+        Self {
+            clearance: clearance.clone(),
+            bearing,
+            journal,
+            axis,
+            plane: [first, axis.cross(&first)],
+        }
+    }
+
+    /// The equations that clearance leaves.
+    pub fn closure(&self, tree: &Tree, ideal: &Closure) -> Closure {
+        let mut rows = vec![Row::Along { axis: self.axis }];
+        if self.clearance.model == ClearanceModel::Planar {
+            rows.extend(ideal.rows().iter().filter(|row| matches!(row, Row::Angle { .. })));
+        }
+        Closure::with_rows(tree, *ideal.predecessor(), *ideal.successor(), rows)
+    }
+
+    /// Number of contact points.
+    pub fn points(&self) -> usize {
+        match self.clearance.model {
+            ClearanceModel::Planar => 1,
+            ClearanceModel::Spatial { .. } => 2,
+        }
+    }
+
+    /// Columns of a contact point in result files.
+    pub fn columns(&self) -> impl Iterator<Item = &'static str> {
+        let planar = ["depth", "rate", "normal", "tangent", "bristle", "impact_speed"];
+        let axial: &[&str] = if self.bristles() == 2 {
+            &["tangent_axial", "bristle_axial"]
+        } else {
+            &[]
+        };
+        planar.into_iter().chain(axial.iter().copied())
+    }
+
+    /// Bristles at each point: one along the tangent in the plane, two in space.
+    fn bristles(&self) -> usize {
+        match (&self.clearance.friction, self.clearance.model) {
+            (None, _) => 0,
+            (Some(_), ClearanceModel::Planar) => 1,
+            (Some(_), ClearanceModel::Spatial { .. }) => 2,
+        }
+    }
+
+    /// Gap at each point: clearance less eccentricity \[m\]; not a number where the journal is too far inclined.
+    fn gaps(&self, pair: &Pair) -> [f64; 2] {
+        let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
+        match self.clearance.model {
+            ClearanceModel::Planar => [fit.gap(bearing, journal); 2],
+            ClearanceModel::Spatial { length } => fit.edge_gaps(length, bearing, journal).unwrap_or([f64::NAN; 2]),
+        }
+    }
+
+    fn gap_rates(&self, pair: &Pair) -> [f64; 2] {
+        let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
+        match self.clearance.model {
+            ClearanceModel::Planar => [fit.gap_rate(bearing, journal); 2],
+            ClearanceModel::Spatial { length } => fit.edge_gap_rates(length, bearing, journal).unwrap_or([f64::NAN; 2]),
+        }
+    }
+
+    fn touches(&self, pair: &Pair) -> [Option<Touch>; 2] {
+        let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
+        match self.clearance.model {
+            ClearanceModel::Planar => [fit.planar(bearing, journal), None],
+            ClearanceModel::Spatial { length } => fit.edges(length, bearing, journal).unwrap_or([None; 2]),
+        }
+    }
+
+    fn pair(&self, motion: &Motion<'_>) -> Pair {
+        let centre = |at: &Attachment| centre(at, &self.axis, motion.positions, motion.velocities);
+        Pair {
+            bearing: centre(&self.bearing),
+            journal: centre(&self.journal),
+        }
+    }
+
+    /// Normal force at a touch: the law's, or half of it at each edge.
+    fn normal(&self, touch: &Touch, impact_speed: f64) -> NormalForce {
+        let force = self.clearance.law.at(touch.depth, touch.rate, impact_speed);
+        match self.clearance.model {
+            ClearanceModel::Planar => force,
+            ClearanceModel::Spatial { .. } => force.scaled(0.5),
+        }
+    }
+
+    /// Coefficients of friction along tangent and axis, and rates of the bristles.
+    fn friction(&self, touch: &Touch, bristles: &[f64]) -> ([f64; 2], [f64; 2]) {
+        match (&self.clearance.friction, bristles) {
+            (Some(model), &[z]) => {
+                let at = model.at(touch.slip, z);
+                ([at.coefficient.value, 0.0], [at.rate.value, 0.0])
+            }
+            (Some(model), &[z1, z2]) => {
+                let at = model.at_planar([touch.slip, touch.axial_slip], [z1, z2]);
+                (at.coefficient, at.rate)
+            }
+            _ => ([0.0; 2], [0.0; 2]),
+        }
+    }
+
+    /// What can be seen of contact point `point`.
+    pub fn observe(&self, motion: &Motion<'_>, point: usize) -> ContactPoint {
+        let pair = self.pair(motion);
+        let (bristles, impact_speed) = self.kept(motion, point);
+        let mut seen = ContactPoint {
+            depth: -self.gaps(&pair)[point],
+            rate: -self.gap_rates(&pair)[point],
+            impact_speed,
+            journal: self.journal_in_bearing(&pair, motion),
+            axial: self.bristles() == 2,
+            ..ContactPoint::default()
+        };
+        seen.bristle[..bristles.len()].copy_from_slice(bristles);
+        if impact_speed > 0.0
+            && let Some(touch) = self.touches(&pair)[point]
+        {
+            let (coefficients, _) = self.friction(&touch, bristles);
+            seen.normal = self.normal(&touch, impact_speed).value;
+            seen.tangent = coefficients.map(|mu| mu * seen.normal);
+            seen.slip = [touch.slip, touch.axial_slip];
+        }
+        seen
+    }
+
+    fn journal_in_bearing(&self, pair: &Pair, motion: &Motion<'_>) -> [f64; 2] {
+        let frame = motion.positions.pose(self.bearing.link) * self.bearing.pose;
+        let e = frame.rotation.tr_mul(&(pair.journal.point - pair.bearing.point));
+        self.plane.map(|direction| direction.dot(&e))
+    }
+
+    /// States and memory for points as observed.
+    pub fn restore<'a>(
+        &self,
+        points: &mut impl Iterator<Item = &'a ContactPoint>,
+        states: &mut [f64],
+        memory: &mut [f64],
+    ) {
+        let bristles = self.bristles();
+        for (k, point) in points.take(self.points()).enumerate() {
+            states[k * bristles..(k + 1) * bristles].copy_from_slice(&point.bristle[..bristles]);
+            memory[k * memory::COUNT + memory::IMPACT_SPEED] = point.impact_speed;
+        }
+    }
+
+    /// Bristles and impact speed of a point.
+    fn kept<'a>(&self, motion: &Motion<'a>, point: usize) -> (&'a [f64], f64) {
+        let bristles = self.bristles();
+        let states = &motion.internal.states[point * bristles..(point + 1) * bristles];
+        (
+            states,
+            motion.internal.memory[point * memory::COUNT + memory::IMPACT_SPEED],
+        )
+    }
+}
+
+/// A frame's origin and axis in motion.
+fn centre(at: &Attachment, axis: &Vector3<f64>, positions: &Positions, velocities: &Velocities) -> Centre {
+    let node = &positions.nodes()[at.link.node()];
+    let twist = &velocities.nodes()[at.link.node()];
+    let arm = node.rotation * at.pose.origin;
+    Centre {
+        point: node.origin + arm,
+        velocity: twist.linear + twist.angular.cross(&arm),
+        spin: twist.angular,
+        axis: node.rotation * (at.pose.rotation * axis),
+    }
+}
+
+impl Load for ClearanceJoint {
+    fn internals(&self) -> Internals {
+        let points = self.points();
+        Internals {
+            states: points * self.bristles(),
+            integrals: points * ContactIntegrals::COUNT,
+            memory: points * memory::COUNT,
+            roots: points,
+        }
+    }
+
+    fn apply(&self, motion: &Motion<'_>, loads: &mut Loads<'_>) {
+        let points = self.points();
+        if (0..points).all(|point| self.kept(motion, point).1 == 0.0) {
+            return;
+        }
+        let pair = self.pair(motion);
+        let touches = self.touches(&pair);
+        let bristles = self.bristles();
+        for (point, touch) in touches.iter().enumerate().take(points) {
+            let (z, impact_speed) = self.kept(motion, point);
+            let (Some(touch), true) = (touch, impact_speed > 0.0) else {
+                continue;
+            };
+            let normal = self.normal(touch, impact_speed);
+            let (coefficients, rates) = self.friction(touch, z);
+            loads.state_rates[point * bristles..(point + 1) * bristles].copy_from_slice(&rates[..bristles]);
+            if normal.value == 0.0 && normal.elastic == 0.0 {
+                continue;
+            }
+            let friction = coefficients.map(|mu| mu * normal.value);
+            let force = touch.force(normal.value, friction, self.clearance.force_point);
+            let origin = |at: &Attachment| motion.positions.nodes()[at.link.node()].origin;
+            let on_bearing = Wrench {
+                torque: force.torque_on_bearing(&origin(&self.bearing)),
+                force: force.on_bearing,
+            };
+            let on_journal = Wrench {
+                torque: force.torque_on_journal(&origin(&self.journal)),
+                force: -force.on_bearing,
+            };
+            loads.add_wrench(self.bearing.link, on_bearing);
+            loads.add_wrench(self.journal.link, on_journal);
+            let storing = normal.elastic * touch.rate;
+            loads.stores(storing);
+            let power = force.power(&pair.bearing, &pair.journal);
+            let damping_loss = normal.value * touch.rate - storing;
+            let integrals = [
+                damping_loss,
+                -power - normal.value * touch.rate,
+                normal.value,
+                normal.value * normal.value,
+            ];
+            loads.integral_rates[point * ContactIntegrals::COUNT..(point + 1) * ContactIntegrals::COUNT]
+                .copy_from_slice(&integrals);
+        }
+    }
+
+    fn potential_energy(&self, motion: &Motion<'_>) -> f64 {
+        let pair = self.pair(motion);
+        let share = 1.0 / self.points() as f64;
+        let stored = |(point, touch): (usize, &Option<Touch>)| match touch {
+            Some(touch) if self.kept(motion, point).1 > 0.0 => share * self.clearance.law.stored_energy(touch.depth),
+            _ => 0.0,
+        };
+        self.touches(&pair)
+            .iter()
+            .enumerate()
+            .take(self.points())
+            .map(stored)
+            .sum()
+    }
+
+    /// Positive while the contact stays what it is: the gap while apart, the depth while in contact.
+    fn roots(&self, motion: &Motion<'_>, roots: &mut [f64]) {
+        let gaps = self.gaps(&self.pair(motion));
+        for (point, (root, gap)) in roots.iter_mut().zip(gaps).enumerate() {
+            let kept = &motion.internal.memory[point * memory::COUNT..];
+            *root = if kept[memory::IMPACT_SPEED] > 0.0 {
+                kept[memory::HOLD] - gap
+            } else {
+                gap
+            };
+        }
+    }
+
+    fn at_event(&self, motion: &Motion<'_>, fired: &[bool], states: &mut [f64], memory: &mut [f64]) {
+        let pair = self.pair(motion);
+        let rates = self.gap_rates(&pair);
+        let (touches, bristles) = (self.touches(&pair), self.bristles());
+        for point in (0..self.points()).filter(|&point| fired[point]) {
+            let kept = &mut memory[point * memory::COUNT..(point + 1) * memory::COUNT];
+            let z = &mut states[point * bristles..(point + 1) * bristles];
+            z.fill(0.0);
+            if kept[memory::IMPACT_SPEED] > 0.0 {
+                kept[memory::IMPACT_SPEED] = 0.0;
+                kept[memory::HOLD] = 0.0;
+                kept[memory::LOST] = motion.t;
+                continue;
+            }
+            // A journal that only grazes still makes contact; the law has a floor for its speed.
+            let speed = (-rates[point]).max(f64::MIN_POSITIVE);
+            kept[memory::IMPACT_SPEED] = speed;
+            let hop = speed * (motion.t - kept[memory::LOST]);
+            let short = hop < SHORT_HOP * self.clearance.fit.clearance();
+            kept[memory::HOPS] = if short { kept[memory::HOPS] + 1.0 } else { 0.0 };
+            if kept[memory::HOPS] >= HOPS {
+                kept[memory::HOLD] = HELD_GAP * self.clearance.fit.clearance();
+            }
+            if let (Some(model), Some(touch)) = (&self.clearance.friction, touches[point]) {
+                let start = self.clearance.bristle_start;
+                let slip = [touch.slip, touch.axial_slip];
+                match z {
+                    [z] => *z = start.deflection(model.model(), touch.slip),
+                    z => z.copy_from_slice(&start.planar_deflection(model.model(), slip)),
+                }
+            }
+        }
+    }
+}
