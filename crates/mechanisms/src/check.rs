@@ -37,7 +37,7 @@ impl Linkage {
         if self.foreign {
             return Err(BuildError::Foreign {
                 what: "the handle of a joint",
-                name: "drive, friction or coordinate_names".into(),
+                name: "drive, springs, friction, coordinate_names or clearance".into(),
             });
         }
         for (name, inertia) in &self.links {

@@ -347,6 +347,11 @@ impl ClearanceJoint {
         }
     }
 
+    /// Whether a contact is held, by the memory of the joint.
+    pub fn is_held(&self, memory: &[f64], point: usize) -> bool {
+        memory[point * memory::COUNT + memory::HOLD] > 0.0
+    }
+
     /// Bristles and impact speed of a point.
     fn kept<'a>(&self, motion: &Motion<'a>, point: usize) -> (&'a [f64], f64) {
         let bristles = self.bristles();

@@ -22,6 +22,8 @@ pub struct ContactEvent {
     pub made: bool,
     /// Speed of approach or of separation \[m/s\].
     pub speed: f64,
+    /// Whether a contact made is held: after many short hops in a row it counts as lost only when a larger gap opens.
+    pub held: bool,
 }
 
 /// Numbers that loads keep between events, from the last event on and before it.
@@ -80,6 +82,7 @@ impl Simulation {
                     point: first + point,
                     made,
                     speed: if made { seen.rate } else { -seen.rate },
+                    held: contact.joint.is_held(&self.memory.now[place.memory.clone()], point),
                 });
             }
             first += contact.joint.points();

@@ -18,6 +18,8 @@ pub struct Tally {
 pub struct PointTally {
     /// Contacts made.
     pub impacts: u64,
+    /// Those among them that were held, see [`ContactEvent::held`](crate::ContactEvent::held).
+    pub held: u64,
     /// Time in contact \[s\], up to the last contact lost.
     closed: f64,
     /// Beginning of the contact that lasts, and its speed of approach.
@@ -76,6 +78,7 @@ impl Tally {
                 };
                 if event.made {
                     point.impacts += 1;
+                    point.held += u64::from(event.held);
                     point.open = Some((*t, event.speed));
                     point.fastest = point.fastest.max(event.speed);
                 } else if let Some((since, approach)) = point.open.take() {

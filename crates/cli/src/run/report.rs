@@ -113,6 +113,9 @@ fn contacts(table: &mut Table, mechanism: &Mechanism, tally: &Tally) {
             entry("separation over approach, mean", restitution, "");
         }
         table.entry(&format!("impacts in {name}"), Cell::count(point.impacts), "");
+        if point.held > 0 {
+            table.entry(&format!("contacts held in {name}"), Cell::count(point.held), "");
+        }
     }
 }
 
