@@ -7,20 +7,20 @@ use linkdyn_kinematics::{Joint, Pose, TreeError};
 use linkdyn_mechanisms::{BuildError, Drive, JointHandle, LinkHandle, Linkage, Mount, Start, StartError};
 use nalgebra::{Matrix3, Unit, Vector3};
 
-fn rod() -> RigidInertia {
+pub(crate) fn rod() -> RigidInertia {
     RigidInertia::solid_cylinder(7850.0, 0.02, 0.5, &Vector3::x())
 }
 
 /// A double pendulum of links `upper`, `lower` on joints `shoulder`, `elbow`.
-struct Arm {
-    linkage: Linkage,
-    upper: LinkHandle,
-    lower: LinkHandle,
-    shoulder: JointHandle,
-    elbow: JointHandle,
+pub(crate) struct Arm {
+    pub linkage: Linkage,
+    pub upper: LinkHandle,
+    pub lower: LinkHandle,
+    pub shoulder: JointHandle,
+    pub elbow: JointHandle,
 }
 
-fn arm() -> Arm {
+pub(crate) fn arm() -> Arm {
     let mut linkage = Linkage::new([0.0, -9.81, 0.0]);
     let (upper, lower) = (linkage.link("upper", rod()), linkage.link("lower", rod()));
     let joint = Joint::revolute_z();
@@ -45,7 +45,7 @@ fn arm() -> Arm {
     }
 }
 
-fn refusal(change: impl FnOnce(&mut Arm)) -> BuildError {
+pub(crate) fn refusal(change: impl FnOnce(&mut Arm)) -> BuildError {
     let mut arm = arm();
     change(&mut arm);
     arm.linkage.build().expect_err("must be refused")
