@@ -67,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let mut n = 1;
     while n <= most {
-        let flexible = run(Some(n), Radau5::default().with_reuse(0.2), 1e-8, until)?;
+        let flexible = run(Some(n), Radau5::default(), 1e-8, until)?;
         let pairs = flexible.slider.iter().zip(&rigid.slider);
         let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!(

@@ -109,8 +109,7 @@ impl Plan {
         match self.method.as_str() {
             "dop853" => Box::new(Dop853::default()),
             "dopri5" => Box::new(DormandPrince5::default()),
-            // df/dy costs a dozen evaluations here and changes slowly.
-            "radau5" => Box::new(Radau5::default().with_reuse(0.2)),
+            "radau5" => Box::new(Radau5::default()),
             "rk4" => Box::new(Rk4::new(step)),
             "newmark" => Box::new(Newmark::new(step, self.corrector())),
             _ => Box::new(Adams::default()),

@@ -163,7 +163,7 @@ fn simulate(
     let mut integration = integration
         .with_stops(&stops)
         .map_err(|error| CliError::usage("the integration cannot begin").with_source(error))?;
-    let mut record = Record::default();
+    let mut record = Record::new(&prepared.mechanism);
     let begun = Instant::now();
     let ended = run_watched(&mut integration, grid.0, grid.1, |mut seen| {
         record.see(&mut seen, grid.1);

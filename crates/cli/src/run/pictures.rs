@@ -68,22 +68,24 @@ pub fn draw(folder: &mut RunFolder, names: &Names<'_>, curves: &[Curve<'_>]) -> 
         &format!("{}: coordinates and speeds", names.title),
         &coordinates.collect::<Vec<_>>(),
         |name, _| {
-            let k = names.coordinates.iter().position(|known| *known == name).unwrap_or(0);
             let unit = names.unit(name);
-            let q = panel(format!("{name} ({unit})"), curves, |record| record.q.get(k));
-            let v = panel(format!("{name}' ({unit}/s)"), curves, |record| record.v.get(k));
+            let q = panel(format!("{name} ({unit})"), curves, |record| record.of(name, &record.q));
+            let v = panel(format!("{name}' ({unit}/s)"), curves, |record| {
+                record.of(name, &record.v)
+            });
             [q, v]
         },
     );
     save(folder, "coordinates", &motion)?;
-    if let Some((name, k)) = names.output.and_then(|name| {
-        let k = names.coordinates.iter().position(|known| *known == name)?;
-        Some((name, k))
-    }) {
+    if let Some(name) = names.output {
         let figure = Figure::new(format!("{}: {name}", names.title)).columns(1);
         let figure = figure
-            .panel(panel(format!("{name} (m)"), curves, |record| record.q.get(k)))
-            .panel(panel(format!("{name}' (m/s)"), curves, |record| record.v.get(k)))
+            .panel(panel(format!("{name} (m)"), curves, |record| {
+                record.of(name, &record.q)
+            }))
+            .panel(panel(format!("{name}' (m/s)"), curves, |record| {
+                record.of(name, &record.v)
+            }))
             .panel(steps(format!("{name}'' (m/s^2)"), curves, |record| {
                 record.accelerations.get(k)
             }));

@@ -2,11 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use linkdyn_mechanisms::{Observation, Seen, Tally};
+use linkdyn_mechanisms::{Mechanism, Observation, Seen, Tally};
 
 /// Curves over time, one point an output.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
+    /// Names of the coordinates.
+    pub coordinates: Vec<String>,
     /// Output times \[s\].
     pub t: Vec<f64>,
     /// Coordinates, one curve each.
@@ -76,6 +78,21 @@ pub struct ContactCurve {
 const STEP_POINTS: f64 = 100.0;
 
 impl Record {
+    /// An empty record of runs of `mechanism`.
+    #[must_use]
+    pub fn new(mechanism: &Mechanism) -> Self {
+        Self {
+            coordinates: mechanism.coordinate_names().map(str::to_owned).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// What belongs to a coordinate of this name.
+    pub fn of<'a, T>(&self, coordinate: &str, curves: &'a [T]) -> Option<&'a T> {
+        let k = self.coordinates.iter().position(|name| name == coordinate)?;
+        curves.get(k)
+    }
+
     /// Takes in what a run shows; `every` is the time between outputs \[s\].
     pub fn see(&mut self, seen: &mut Seen<'_>, every: f64) {
         self.tally.see(seen);
