@@ -87,7 +87,7 @@ pub fn draw(folder: &mut RunFolder, names: &Names<'_>, curves: &[Curve<'_>]) -> 
                 record.of(name, &record.v)
             }))
             .panel(steps(format!("{name}'' (m/s^2)"), curves, |record| {
-                record.accelerations.get(k)
+                record.of(name, &record.accelerations)
             }));
         save(folder, "output", &figure)?;
     }
