@@ -118,17 +118,26 @@ pub enum DynamicsError {
         /// Iterations made.
         iterations: usize,
     },
+    /// A load has no meaning at this state.
+    #[error("t = {time} s: {reason}")]
+    Refused {
+        /// Time \[s\].
+        time: f64,
+        /// What the load says.
+        reason: String,
+    },
 }
 
 impl DynamicsError {
-    /// Index of the speed that the error speaks of.
-    pub fn speed(&self) -> usize {
+    /// Index of the speed that the error speaks of, if it is about one.
+    pub fn speed(&self) -> Option<usize> {
         match self {
             Self::SingularMass { speed, .. }
             | Self::NotFinite { speed, .. }
             | Self::Jammed { speed, .. }
             | Self::NotUnique { speed, .. }
-            | Self::NotSettled { speed, .. } => *speed,
+            | Self::NotSettled { speed, .. } => Some(*speed),
+            Self::Refused { .. } => None,
         }
     }
 }

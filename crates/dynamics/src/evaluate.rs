@@ -53,7 +53,7 @@ impl System {
         let base = -self.gravity;
         self.tree
             .sweep(q, v, &base, &mut work.positions, &mut work.velocities, &mut work.biases);
-        self.apply_loads(at, work);
+        self.apply_loads(at, work)?;
         work.columns.clear();
         for (speed, force) in work.generalised.iter().enumerate() {
             *work.columns.at_mut(speed, 0) = *force;
@@ -97,12 +97,12 @@ impl System {
 
     /// Generalised forces and outside wrenches of all loads, and the power of those that are not conservative.
     #[inline]
-    fn apply_loads(&self, at: &Instant<'_>, work: &mut Workspace) {
+    fn apply_loads(&self, at: &Instant<'_>, work: &mut Workspace) -> Result<(), DynamicsError> {
         work.generalised.fill(0.0);
         work.own.fill(Wrench::zero());
         work.power = 0.0;
         if self.loads.is_empty() {
-            return;
+            return Ok(());
         }
         let Instant { t, q, v, internal } = *at;
         let motion = Motion {
@@ -118,6 +118,7 @@ impl System {
             counter: &mut work.own,
             on_links: false,
             storing: 0.0,
+            refused: None,
             state_rates: &mut [],
             integral_rates: &mut [],
         };
@@ -127,13 +128,23 @@ impl System {
         let (mut states, mut integrals) = (&mut work.state_rates[..], &mut work.integral_rates[..]);
         states.fill(0.0);
         integrals.fill(0.0);
-        for (load, place) in with_internals.iter().zip(&self.places) {
+        for (k, (load, place)) in with_internals.iter().zip(&self.places).enumerate() {
+            if k == self.working {
+                work.power = loads.power(&motion);
+            }
             (loads.state_rates, states) = states.split_at_mut(place.states.len());
             (loads.integral_rates, integrals) = integrals.split_at_mut(place.integrals.len());
             load.apply(&self.seen_by(place, &motion, internal), &mut loads);
         }
-        work.power = loads.power(&motion);
+        if self.working == with_internals.len() {
+            work.power = loads.power(&motion);
+        }
+        (loads.state_rates, loads.integral_rates) = (&mut [], &mut []);
         conservative.iter().for_each(|load| load.apply(&motion, &mut loads));
+        match loads.refused {
+            None => Ok(()),
+            Some(reason) => Err(DynamicsError::Refused { time: t, reason }),
+        }
     }
 
     /// Adds the links' inertial wrenches for vanishing rates to the outside ones.

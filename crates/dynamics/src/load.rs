@@ -81,6 +81,8 @@ pub struct Loads<'a> {
     pub(crate) on_links: bool,
     /// Power that goes into energy stored by loads \[W\].
     pub(crate) storing: f64,
+    /// Why a load has no meaning here.
+    pub(crate) refused: Option<String>,
     /// Rates of the internal states of the load that is asked; zero before it is.
     pub state_rates: &'a mut [f64],
     /// Rates of its integrals; zero before it is asked.
@@ -108,6 +110,12 @@ impl Loads<'_> {
         self.storing += power;
     }
 
+    /// Refuses this state: the load has no meaning here. The evaluation then fails with the first such reason.
+    #[cold]
+    pub fn refuse(&mut self, reason: impl Into<String>) {
+        self.refused.get_or_insert_with(|| reason.into());
+    }
+
     /// Power of all loads added so far that is not stored \[W\].
     #[inline]
     pub(crate) fn power(&self, motion: &Motion<'_>) -> f64 {
@@ -130,13 +138,14 @@ pub trait Load: Debug + Send + Sync {
     /// Adds the load's forces.
     fn apply(&self, motion: &Motion<'_>, loads: &mut Loads<'_>);
 
-    /// Whether the load is the gradient of an energy. Its energy then counts as stored; the power of all other loads counts
-    /// as work done on the system.
+    /// Whether the load is the gradient of its [stored energy](Load::potential_energy). The power of all other loads counts as
+    /// work done on the system, less what they [store](Loads::stores).
     fn is_conservative(&self) -> bool {
         false
     }
 
-    /// Energy that the load stores \[J\].
+    /// Energy that the load stores \[J\]. A load that is not conservative must tell its rate by [`Loads::stores`], or the energy
+    /// balance does not close.
     fn potential_energy(&self, _motion: &Motion<'_>) -> f64 {
         0.0
     }

@@ -109,10 +109,13 @@ pub struct System {
     pub(crate) gravity: Vector3<f64>,
     pub(crate) closures: Vec<Closure>,
     pub(crate) equations: usize,
-    /// First those without internals that are not conservative, then those with internals, then the conservative ones.
+    /// First those without internals that are not conservative, then those with internals (the conservative ones last), then
+    /// conservative ones without.
     pub(crate) loads: Vec<Arc<dyn Load>>,
     /// End of the first group.
     pub(crate) plain_loads: usize,
+    /// How many of the second group are not conservative.
+    pub(crate) working: usize,
     /// The second group's places in the internal states.
     pub(crate) places: Vec<Place>,
     /// Sums over all loads.
@@ -216,10 +219,12 @@ impl System {
                 load,
             });
         }
-        let (with_internals, plain): (Vec<_>, Vec<_>) =
+        let (mut with_internals, plain): (Vec<_>, Vec<_>) =
             d.loads.into_iter().partition(|load| !load.internals().is_empty());
         let (mut loads, conservative): (Vec<_>, Vec<_>) = plain.into_iter().partition(|load| !load.is_conservative());
         let plain_loads = loads.len();
+        with_internals.sort_by_key(|load| load.is_conservative());
+        let working = with_internals.partition_point(|load| !load.is_conservative());
         let mut internals = Internals::default();
         let places = with_internals
             .iter()
@@ -236,6 +241,7 @@ impl System {
             closures: d.closures,
             loads,
             plain_loads,
+            working,
             places,
             zeros: vec![0.0; internals.states.max(internals.memory)],
             internals,

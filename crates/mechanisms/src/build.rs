@@ -63,7 +63,7 @@ impl Linkage {
             let ideal = Closure::new(&placed.tree, one, two, &cut.joint);
             match (&cut.clearance, &cut.joint) {
                 (Some(clearance), Joint::Revolute { axis }) => {
-                    let joint = Arc::new(ClearanceJoint::new(clearance, &ideal, **axis));
+                    let joint = Arc::new(ClearanceJoint::new(&cut.name, clearance, &ideal, **axis));
                     closures.push(joint.closure(&placed.tree, &ideal));
                     contacts.push(Contact {
                         name: cut.name.clone(),

@@ -1,7 +1,7 @@
 //! Clearance in a cut revolute joint: a journal that touches its bearing, as a load with states of its own.
 
 use linkdyn_contact::{
-    Centre, ContactLaw, Fit, ForcePoint, NormalForce, NormalModel, ParameterError as ContactError, Touch,
+    Centre, ContactLaw, Fit, ForcePoint, NormalForce, NormalModel, ParameterError as ContactError, Skewed, Touch,
 };
 use linkdyn_dynamics::{Internals, Load, Loads, Motion};
 use linkdyn_friction::{Bristle, BristleModel, BristleStart, ParameterError as FrictionError};
@@ -102,7 +102,8 @@ pub struct ContactPoint {
     pub impact_speed: f64,
     /// Sliding speed of the bearing's surface along tangent and axis \[m/s\].
     pub slip: [f64; 2],
-    /// Centre of the journal in the bearing, in the plane normal to its axis \[m\].
+    /// Centre of the journal against that of the bearing, along two axes of the bearing's frame normal to the joint's axis: y and z
+    /// for a joint along x, x and y for one along z \[m\].
     pub journal: [f64; 2],
     /// Whether friction along the axis is there too.
     pub axial: bool,
@@ -174,13 +175,16 @@ const HELD_GAP: f64 = 1e-2;
 /// A joint with clearance as a load.
 #[derive(Debug)]
 pub(crate) struct ClearanceJoint {
+    /// Name of the cut joint.
+    pub name: String,
     pub clearance: Clearance,
     /// Frame with the hole, and frame with the pin.
     bearing: Attachment,
     journal: Attachment,
     /// The joint's axis in both frames.
     axis: Vector3<f64>,
-    /// Two directions normal to it, in the frame with the hole.
+    /// Two directions normal to it, in the frame with the hole: of its axes the first that is not close to the joint's, made
+    /// normal to that, and the one that makes them right-handed.
     plane: [Vector3<f64>; 2],
 }
 
@@ -192,15 +196,16 @@ struct Pair {
 
 impl ClearanceJoint {
     /// In place of the ideal closure of a revolute joint along `axis` of both frames.
-    pub fn new(clearance: &Clearance, ideal: &Closure, axis: Vector3<f64>) -> Self {
+    pub fn new(name: &str, clearance: &Clearance, ideal: &Closure, axis: Vector3<f64>) -> Self {
         let (one, two) = (*ideal.predecessor(), *ideal.successor());
         let (bearing, journal) = match clearance.bearing {
             Side::Predecessor => (one, two),
             Side::Successor => (two, one),
         };
         let away = if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
-        let first = axis.cross(&away).normalize();
+        let first = (away - axis * away.dot(&axis)).normalize();
         Self {
+            name: name.to_owned(),
             clearance: clearance.clone(),
             bearing,
             journal,
@@ -263,12 +268,17 @@ impl ClearanceJoint {
         }
     }
 
-    fn touches(&self, pair: &Pair) -> [Option<Touch>; 2] {
+    fn touches(&self, pair: &Pair) -> Result<[Option<Touch>; 2], Skewed> {
         let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
         match self.clearance.model {
-            ClearanceModel::Planar => [fit.planar(bearing, journal), None],
-            ClearanceModel::Spatial { length } => fit.edges(length, bearing, journal).unwrap_or([None; 2]),
+            ClearanceModel::Planar => Ok([fit.planar(bearing, journal), None]),
+            ClearanceModel::Spatial { length } => fit.edges(length, bearing, journal),
         }
+    }
+
+    /// The touches where there is nobody to tell of a journal too far inclined: evaluations refuse such a state.
+    fn touches_or_none(&self, pair: &Pair) -> [Option<Touch>; 2] {
+        self.touches(pair).unwrap_or_default()
     }
 
     fn pair(&self, motion: &Motion<'_>) -> Pair {
@@ -317,7 +327,7 @@ impl ClearanceJoint {
         };
         seen.bristle[..bristles.len()].copy_from_slice(bristles);
         if impact_speed > 0.0
-            && let Some(touch) = self.touches(&pair)[point]
+            && let Some(touch) = self.touches_or_none(&pair)[point]
         {
             let (coefficients, _) = self.friction(&touch, bristles);
             seen.normal = self.normal(&touch, impact_speed).value;
@@ -333,18 +343,15 @@ impl ClearanceJoint {
         self.plane.map(|direction| direction.dot(&e))
     }
 
-    /// States and memory for points as observed.
-    pub fn restore<'a>(
-        &self,
-        points: &mut impl Iterator<Item = &'a ContactPoint>,
-        states: &mut [f64],
-        memory: &mut [f64],
-    ) {
-        let bristles = self.bristles();
-        for (k, point) in points.take(self.points()).enumerate() {
-            states[k * bristles..(k + 1) * bristles].copy_from_slice(&point.bristle[..bristles]);
-            memory[k * memory::COUNT + memory::IMPACT_SPEED] = point.impact_speed;
+    /// Whether a point to which nothing has happened yet is in contact.
+    pub fn begins_in_contact(&self, motion: &Motion<'_>, point: usize) -> bool {
+        let kept = &motion.internal.memory[point * memory::COUNT..(point + 1) * memory::COUNT];
+        if kept.iter().any(|&number| number != 0.0) {
+            return false;
         }
+        let pair = self.pair(motion);
+        let (gap, rate) = (self.gaps(&pair)[point], self.gap_rates(&pair)[point]);
+        gap < 0.0 || (gap == 0.0 && rate < 0.0)
     }
 
     /// Whether a contact is held, by the memory of the joint.
@@ -389,11 +396,18 @@ impl Load for ClearanceJoint {
 
     fn apply(&self, motion: &Motion<'_>, loads: &mut Loads<'_>) {
         let points = self.points();
-        if (0..points).all(|point| self.kept(motion, point).1 == 0.0) {
+        let free = (0..points).all(|point| self.kept(motion, point).1 == 0.0);
+        if free && self.clearance.model == ClearanceModel::Planar {
             return;
         }
         let pair = self.pair(motion);
-        let touches = self.touches(&pair);
+        let touches = match self.touches(&pair) {
+            Ok(touches) => touches,
+            Err(skewed) => return loads.refuse(format!("clearance of joint `{}`: {skewed}", self.name)),
+        };
+        if free {
+            return;
+        }
         let bristles = self.bristles();
         for (point, touch) in touches.iter().enumerate().take(points) {
             let (z, impact_speed) = self.kept(motion, point);
@@ -441,7 +455,7 @@ impl Load for ClearanceJoint {
             Some(touch) if self.kept(motion, point).1 > 0.0 => share * self.clearance.law.stored_energy(touch.depth),
             _ => 0.0,
         };
-        self.touches(&pair)
+        self.touches_or_none(&pair)
             .iter()
             .enumerate()
             .take(self.points())
@@ -465,7 +479,7 @@ impl Load for ClearanceJoint {
     fn at_event(&self, motion: &Motion<'_>, fired: &[bool], states: &mut [f64], memory: &mut [f64]) {
         let pair = self.pair(motion);
         let rates = self.gap_rates(&pair);
-        let (touches, bristles) = (self.touches(&pair), self.bristles());
+        let (touches, bristles) = (self.touches_or_none(&pair), self.bristles());
         for point in (0..self.points()).filter(|&point| fired[point]) {
             let kept = &mut memory[point * memory::COUNT..(point + 1) * memory::COUNT];
             let z = &mut states[point * bristles..(point + 1) * bristles];

@@ -168,12 +168,10 @@ pub enum StartError {
 
 /// Why a mechanism has no accelerations at a state, with the name of the coordinate that the cause speaks of.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("`{coordinate}` (speed {speed}): {cause}")]
+#[error("{}{cause}", .coordinate.as_ref().map_or(String::new(), |name| format!("`{name}`: ")))]
 pub struct MotionError {
-    /// The coordinate.
-    pub coordinate: String,
-    /// Its speed's index.
-    pub speed: usize,
+    /// The coordinate, if the cause speaks of one.
+    pub coordinate: Option<String>,
     /// What went wrong.
     pub cause: DynamicsError,
 }

@@ -44,7 +44,7 @@ impl Memory {
         }
     }
 
-    /// The memory at a time not before the last event but one.
+    /// The memory at a time not before the last event but one, in a run forward in time.
     #[inline]
     pub fn at(&self, t: f64) -> &[f64] {
         if t < self.since { &self.before } else { &self.now }
@@ -89,23 +89,61 @@ impl Simulation {
         });
     }
 
+    /// Makes the contacts that are there before anything has happened: where the journal of a start already lies in its bearing.
+    /// Root functions tell only of those that begin later. Tells whether there were any; [`run`](crate::run()) begins with this.
+    pub fn begin(&mut self, t: f64, y: &mut [f64]) -> bool {
+        self.happened.clear();
+        let mut fired = std::mem::take(&mut self.fired);
+        fired.clear();
+        fired.resize(self.mechanism.system.internals().roots, false);
+        let at = self.layout.instant(t, y, &self.memory.now);
+        let mut contacts = self.mechanism.contacts.iter();
+        self.mechanism
+            .system
+            .ask_loads(&at, &mut self.work, |_, motion, place| {
+                let Some(contact) = contacts.next() else { return };
+                for (point, root) in place.roots.clone().enumerate() {
+                    fired[root] = contact.joint.begins_in_contact(motion, point);
+                }
+            });
+        let any = fired.contains(&true);
+        if any {
+            self.meet_event(t, y, &fired);
+        }
+        self.fired = fired;
+        if self.switching == Switching::AtSteps {
+            self.measure_roots(t, y);
+            self.armed.clear();
+            self.armed.extend(self.roots.iter().map(|&g| g > 0.0));
+        }
+        any
+    }
+
     /// Makes and loses contacts at the end of a step where that is not left to the integration; tells whether there were any.
     pub(crate) fn switch_at_step(&mut self, t: f64, y: &mut [f64]) -> bool {
         if self.switching != Switching::AtSteps {
             return false;
         }
-        let roots = self.mechanism.system.internals().roots;
-        let (mut g, mut fired) = (std::mem::take(&mut self.roots), std::mem::take(&mut self.fired));
-        g.resize(roots, 0.0);
-        let at = self.layout.instant(t, y, &self.memory);
-        self.mechanism.system.roots(&at, &mut self.work, &mut g);
+        self.measure_roots(t, y);
+        let mut fired = std::mem::take(&mut self.fired);
+        let pairs = || self.roots.iter().zip(&self.armed);
         fired.clear();
-        fired.extend(g.iter().map(|&g| g < 0.0));
+        fired.extend(pairs().map(|(&g, &armed)| armed && g < 0.0));
         let any = fired.contains(&true);
         if any {
             self.meet_event(t, y, &fired);
+            self.measure_roots(t, y);
         }
-        (self.roots, self.fired) = (g, fired);
+        for ((armed, &g), &fired) in self.armed.iter_mut().zip(&self.roots).zip(&fired) {
+            *armed = g > 0.0 || (*armed && !fired);
+        }
+        self.fired = fired;
         any
+    }
+
+    fn measure_roots(&mut self, t: f64, y: &[f64]) {
+        self.roots.resize(self.mechanism.system.internals().roots, 0.0);
+        let at = self.layout.instant(t, y, &self.memory.now);
+        self.mechanism.system.roots(&at, &mut self.work, &mut self.roots);
     }
 }

@@ -141,13 +141,8 @@ impl Mechanism {
     /// An error of the equations of motion in terms of this mechanism's names.
     #[cold]
     pub fn explain(&self, cause: DynamicsError) -> MotionError {
-        let speed = cause.speed();
-        let coordinate = self.speeds.get(speed).cloned().unwrap_or_default();
-        MotionError {
-            coordinate,
-            speed,
-            cause,
-        }
+        let coordinate = cause.speed().and_then(|speed| self.speeds.get(speed).cloned());
+        MotionError { coordinate, cause }
     }
 
     /// Where a link's frame sits on the tree; `None` for unknown names.

@@ -32,6 +32,10 @@ pub struct Observation {
     pub work: f64,
     /// Integrals of loads since the start.
     pub integrals: Vec<f64>,
+    /// Internal states of loads.
+    pub states: Vec<f64>,
+    /// What loads had kept since the last event.
+    pub memory: Vec<f64>,
     /// Largest closure residual and rate.
     pub violation: (f64, f64),
 }
@@ -43,7 +47,7 @@ impl Simulation {
     /// [`MotionError`] where the accelerations do not exist.
     pub fn observe(&mut self, t: f64, y: &[f64], observation: &mut Observation) -> Result<(), MotionError> {
         let system = &self.mechanism.system;
-        let at = self.layout.instant(t, y, &self.memory);
+        let at = self.layout.instant(t, y, self.memory.at(t));
         let o = observation;
         o.violation = system.violation(at.q, at.v, &mut self.work);
         let evaluated = system.evaluate_with(&at, &mut self.work);
@@ -70,11 +74,15 @@ impl Simulation {
         contact_points(&self.mechanism, &at, &mut self.work, &mut o.contacts);
         o.work = y[self.layout.work.clone()].first().copied().unwrap_or(0.0);
         replace(&mut o.integrals, &y[self.layout.integrals.clone()]);
+        replace(&mut o.states, at.internal.states);
+        replace(&mut o.memory, at.internal.memory);
         Ok(())
     }
 
-    /// The state vector of an observation; the memory of contacts becomes that of its time. What no later motion depends on is left
-    /// out: hops of a contact before it, loads of one's own with internals.
+    /// The state vector of an observation; the memory of loads becomes that of its time, so that a run may go on from there.
+    ///
+    /// # Panics
+    /// If the observation is that of another mechanism.
     pub fn restore(&mut self, observation: &Observation) -> Vec<f64> {
         let (o, layout) = (observation, self.layout.clone());
         let mut y = vec![0.0; layout.len()];
@@ -83,21 +91,15 @@ impl Simulation {
         if let Some(work) = y[layout.work.clone()].first_mut() {
             *work = o.work;
         }
+        y[layout.states.clone()].copy_from_slice(&o.states);
         y[layout.integrals.clone()].copy_from_slice(&o.integrals);
-        let mut memory = vec![0.0; self.memory().len()];
-        let mut points = o.contacts.iter();
-        for (contact, place) in self.mechanism.contacts.iter().zip(self.mechanism.system.places()) {
-            let states = &mut y[layout.states.clone()][place.states.clone()];
-            let memory = &mut memory[place.memory.clone()];
-            contact.joint.restore(&mut points, states, memory);
-        }
-        self.set_memory(&memory);
+        self.set_memory(&o.memory);
         y
     }
 
     /// Contact points of joints with clearance at `t` and state vector `y`.
     pub fn contact_points(&mut self, t: f64, y: &[f64], points: &mut Vec<ContactPoint>) {
-        let at = self.layout.instant(t, y, &self.memory);
+        let at = self.layout.instant(t, y, self.memory.at(t));
         contact_points(&self.mechanism, &at, &mut self.work, points);
     }
 

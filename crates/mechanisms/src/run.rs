@@ -134,10 +134,16 @@ pub fn run_watched<M: Method<Simulation>>(
         every,
         count: 1,
     };
+    if integration.problem_mut().begin(start, &mut rows.y) {
+        integration.restart(start, &rows.y)?;
+    }
     rows.observe(integration.problem_mut(), start, &mut observer)?;
     let residual = rows.observation.violation.0;
     if residual.is_nan() || residual > OFF_THE_LOOP {
         return Err(RunError::OpenStart { residual });
+    }
+    for &event in integration.problem().happened() {
+        stop_if(observer(Seen::Contact { t: start, event }), start)?;
     }
     let mut t = start;
     while t < until {
@@ -151,7 +157,12 @@ pub fn run_watched<M: Method<Simulation>>(
         };
         t = integration.state().0;
         while rows.next() <= t && rows.next() < until - 1e-9 * every {
-            integration.interpolate(rows.next(), &mut rows.y)?;
+            if rows.next() == t {
+                // Of two states at an event the later one, as at the end of a run.
+                rows.y.copy_from_slice(integration.state().1);
+            } else {
+                integration.interpolate(rows.next(), &mut rows.y)?;
+            }
             rows.observe(integration.problem_mut(), rows.next(), &mut observer)?;
             rows.count += 1;
         }

@@ -15,7 +15,8 @@ use thiserror::Error;
 /// contacts). Closures are kept by projection after each step.
 ///
 /// Numbers that change at events only, the memory of loads, stand beside it: they are constant in every step. The memory of the
-/// time before the last event is kept too, so that states within the step that led to it can be observed.
+/// time before the last event is kept too, so that states within the step that led to it can be observed (in runs forward in
+/// time; a contact has no meaning in the other direction, where it would have to begin with the speed at which it ends).
 #[derive(Clone, Debug)]
 pub struct Simulation {
     pub(crate) mechanism: Mechanism,
@@ -30,6 +31,8 @@ pub struct Simulation {
     /// Scratch for root functions.
     pub(crate) roots: Vec<f64>,
     pub(crate) fired: Vec<bool>,
+    /// Root functions that have been positive, where they are asked for after steps only.
+    pub(crate) armed: Vec<bool>,
     drift_tolerance: f64,
     worst: Worst,
 }
@@ -129,6 +132,7 @@ impl Simulation {
             switching: Switching::default(),
             roots: Vec::new(),
             fired: Vec::new(),
+            armed: Vec::new(),
             drift_tolerance: 0.0,
             worst: Worst::default(),
             mechanism: mechanism.clone(),
@@ -244,16 +248,16 @@ impl Simulation {
 }
 
 impl Layout {
-    /// A state vector as mechanics see it.
+    /// A state vector with the memory of loads, as mechanics see it.
     #[inline]
-    pub(crate) fn instant<'a>(&self, t: f64, y: &'a [f64], memory: &'a Memory) -> Instant<'a> {
+    pub(crate) fn instant<'a>(&self, t: f64, y: &'a [f64], memory: &'a [f64]) -> Instant<'a> {
         Instant {
             t,
             q: &y[self.coordinates.clone()],
             v: &y[self.speeds.clone()],
             internal: InternalState {
                 states: &y[self.states.clone()],
-                memory: memory.at(t),
+                memory,
             },
         }
     }
@@ -267,7 +271,7 @@ impl Ode for Simulation {
     #[inline]
     fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
         let system = &self.mechanism.system;
-        let at = self.layout.instant(t, y, &self.memory);
+        let at = self.layout.instant(t, y, &self.memory.now);
         // A trial state may lie where the mechanism jams or stretches; a shorter step may not.
         let evaluated = system.evaluate_with(&at, &mut self.work);
         evaluated.map_err(|cause| EvalError::Retry(Box::new(self.mechanism.explain(cause))))?;
@@ -302,7 +306,7 @@ impl Ode for Simulation {
     }
 
     fn root(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
-        let at = self.layout.instant(t, y, &self.memory);
+        let at = self.layout.instant(t, y, &self.memory.now);
         self.mechanism.system.roots(&at, &mut self.work, g);
         Ok(())
     }
