@@ -124,6 +124,8 @@ pub enum ClearanceArg {
 pub enum BristleArg {
     /// LuGre as published: passive at low speeds only
     Lugre,
+    /// LuGre as published, started on the deflection of lasting sliding
+    Steady,
     /// LuGre whose damping is capped, so that it is passive and friction never exceeds its static value
     Cap,
     /// LuGre whose damping decays with the sliding speed

@@ -3,7 +3,7 @@
 use linkdyn_mechanisms::Scene;
 use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, bristle, rsrrr, rsup};
 use linkdyn_mechanisms::dynamics::Baumgarte;
-use linkdyn_mechanisms::friction::{Bristle, ElastoPlastic, Guard, LuGre};
+use linkdyn_mechanisms::friction::{Bristle, BristleStart, ElastoPlastic, Guard, LuGre};
 
 use crate::args::{BristleArg, ClearanceArg, RunArgs, ScenesArgs};
 use crate::errors::CliError;
@@ -150,6 +150,10 @@ fn make_rsup(variant: &Variant) -> Result<Scene, CliError> {
             .friction
             .unwrap_or(true)
             .then(|| friction(variant.bristle.unwrap_or(BristleArg::Lugre))),
+        bristle_start: match variant.bristle {
+            Some(BristleArg::Steady) => BristleStart::Steady,
+            _ => BristleStart::Relaxed,
+        },
         flexible: variant.flexible.map(usize::from),
     });
     let mut scene = scene.map_err(|error| CliError::usage("there is no such scene").with_source(error))?;
@@ -168,7 +172,7 @@ fn friction(model: BristleArg) -> Bristle {
         ..published
     };
     match model {
-        BristleArg::Lugre => published.into(),
+        BristleArg::Lugre | BristleArg::Steady => published.into(),
         BristleArg::Cap => capped.into(),
         BristleArg::Decay => LuGre {
             // Beyond the Stribeck speed, where sliding is well under way.

@@ -28,6 +28,8 @@ pub struct Rsup {
     pub clearance_size: f64,
     /// Friction of that clearance joint, if any.
     pub friction: Option<Bristle>,
+    /// How its bristle is deflected when a contact is made.
+    pub bristle_start: BristleStart,
     /// Number of spring-damping elements of a flexible coupler; none for a rigid one.
     pub flexible: Option<usize>,
 }
@@ -47,6 +49,7 @@ impl Default for Rsup {
             clearance: None,
             clearance_size: CLEARANCE,
             friction: Some(bristle().into()),
+            bristle_start: BristleStart::Relaxed,
             flexible: None,
         }
     }
@@ -230,7 +233,7 @@ fn clearance(kind: ClearanceKind, variant: &Rsup) -> Result<Clearance, RsupError
         },
         law: NormalLaw::new(stiffness, 1.5, damping)?.into(),
         friction: variant.friction.clone(),
-        bristle_start: BristleStart::default(),
+        bristle_start: variant.bristle_start,
         force_point: ForcePoint::OwnSurface,
     })
 }
