@@ -3,6 +3,7 @@
 mod architecture;
 mod assembly;
 mod baumgarte;
+mod clearance;
 mod clearance_contact;
 mod clearance_refusals;
 mod closed_form_loops;
