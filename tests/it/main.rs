@@ -26,5 +26,6 @@ mod reaction_supports;
 mod recursion_and_lagrange;
 mod redundant_closures;
 mod refusals;
+mod resting_contact;
 mod rsrrr;
 mod rsup;
