@@ -5,8 +5,8 @@ use linkdyn_dynamics::RigidInertia;
 use linkdyn_integrators::{Dop853, Integration, Rk4};
 use linkdyn_kinematics::Joint;
 use linkdyn_mechanisms::{
-    Clearance, ClearanceModel, ContactEvent, Linkage, Mechanism, Mount, Observation, RunError, Seen, Side, Simulation,
-    State, Switching, run_watched,
+    BuildError, Clearance, ClearanceModel, ContactEvent, Linkage, Mechanism, Mount, Observation, RunError, Seen, Side,
+    Simulation, State, Switching, run_watched,
 };
 use nalgebra::{Matrix3, Vector3};
 use std::ops::ControlFlow;
@@ -178,4 +178,30 @@ fn a_journal_across_its_bearing_is_refused_by_name() {
         message.contains("joint `R`") && message.contains("inclined"),
         "{message}"
     );
+}
+
+#[test]
+fn contact_points_have_names_of_their_own() {
+    let mut linkage = Linkage::new([0.0; 3]);
+    let pin = linkage.link("pin", inertia());
+    let ground = Mount::at_origin(Linkage::GROUND);
+    linkage.joint("ball", Joint::SphericalZyx, ground, Mount::at_origin(pin));
+    let joints = [
+        ("R", ClearanceModel::Spatial { length: 0.02 }),
+        ("R1", ClearanceModel::Planar),
+    ];
+    for (name, model) in joints {
+        let cut = linkage.cut(name, Joint::revolute_z(), ground, Mount::at_origin(pin));
+        linkage.clearance(cut, clearance(model));
+    }
+    let error = linkage.build().expect_err("two contacts called R1");
+    assert_eq!(error, BuildError::DuplicateName { name: "R1".into() });
+}
+
+/// Of a planar joint with clearance one equation is a force along the axis, two are torques.
+#[test]
+fn forces_of_loops_leave_out_torques() {
+    let mechanism = pin();
+    let forces: Vec<f64> = mechanism.loop_forces(&[-3.0, 40.0, 50.0]).collect();
+    assert_eq!(forces, [3.0]);
 }

@@ -76,7 +76,7 @@ pub struct RunArgs {
     /// Corrector iterations in each step of newmark [default: until they settle]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub iterations: Option<u32>,
-    /// Fixed step of rk4 and newmark, in seconds [default: 1e-4]
+    /// Fixed step of rk4 and newmark, in seconds [default: 1e-4, with --as-published 5e-6]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub step: Option<f64>,
     /// Simulated time at which to stop, in seconds [default: the scene's]
@@ -134,6 +134,15 @@ pub enum BristleArg {
     ElastoPlastic,
     /// Dahl: no damping of the bristle, no static peak
     Dahl,
+}
+
+impl BristleArg {
+    /// The name on the command line.
+    #[must_use]
+    pub fn name(self) -> String {
+        self.to_possible_value()
+            .map_or_else(String::new, |value| value.get_name().to_owned())
+    }
 }
 
 /// A whole number from 1 to 1000.

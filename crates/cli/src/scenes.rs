@@ -226,6 +226,10 @@ impl Entry {
             let message = format!("`{option}` says nothing without `--clearance`");
             return Err(CliError::usage(message).with_hint("add `--clearance planar` or `--clearance spatial`"));
         }
+        if variant.bristle.is_some() && variant.friction == Some(false) {
+            let message = "`--bristle` says nothing with `--no-friction`";
+            return Err(CliError::usage(message).with_hint("leave one of them out"));
+        }
         (self.make)(variant)
     }
 

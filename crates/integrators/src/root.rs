@@ -8,7 +8,8 @@ pub(crate) struct Sample {
     pub(crate) slope: f64,
 }
 
-/// A dip of the cubic polynomial is looked at more closely if it comes closer to zero than the change over the interval, and once it has been, as long as it comes below this part of the lowest value found.
+/// A dip of the cubic polynomial is looked at more closely if it comes closer to zero than the change over the interval, and once it
+/// has been, as long as it comes below this part of the lowest value found.
 const PROMISING: f64 = 0.5;
 
 /// Part of an interval over which slopes are measured.

@@ -1,6 +1,5 @@
 //! The RSUP scene with a flexible coupler of n = 1, 2, 4, ... spring-damping elements: how far the slider is from where a rigid
-//! coupler would put it, the energy that is elastic, and what each run takes. Frequencies of the coupler with pinned ends beside
-//! those of Euler and Bernoulli.
+//! coupler would put it, the energy that is elastic, and what each run takes.
 //!
 //! Arguments: end of the run \[s\] (default 0.02) and largest n (default 4); `5 16` takes minutes.
 

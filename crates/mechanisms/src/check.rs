@@ -30,6 +30,16 @@ impl Linkage {
                 }
             }
         }
+        seen.clear();
+        let with_clearance = self
+            .cuts
+            .iter()
+            .filter_map(|cut| Some((&cut.name, cut.clearance.as_ref()?)));
+        for name in with_clearance.flat_map(|(cut, clearance)| clearance.model.point_names(cut)) {
+            if !seen.insert(name.clone()) {
+                return Err(BuildError::DuplicateName { name });
+            }
+        }
         Ok(())
     }
 
@@ -129,8 +139,8 @@ impl JointItem {
             });
         }
         let faults = self.drives.iter().filter_map(Drive::fault);
-        let faults = faults.chain(self.springs.iter().filter_map(Spring::fault));
-        if let Some((parameter, value, expected)) = { faults }.next() {
+        let mut faults = faults.chain(self.springs.iter().filter_map(Spring::fault));
+        if let Some((parameter, value, expected)) = faults.next() {
             return Err(BuildError::Parameter {
                 joint: joint(),
                 parameter,

@@ -55,6 +55,28 @@ pub enum ClearanceModel {
     },
 }
 
+impl ClearanceModel {
+    /// Number of contact points.
+    pub(crate) fn points(self) -> usize {
+        match self {
+            Self::Planar => 1,
+            Self::Spatial { .. } => 2,
+        }
+    }
+
+    /// Their names: that of the joint, or with 1 and 2 behind it.
+    pub(crate) fn point_names(self, joint: &str) -> impl Iterator<Item = String> + use<> {
+        let (joint, points) = (joint.to_owned(), self.points());
+        (1..=points).map(move |point| {
+            if points == 1 {
+                joint.clone()
+            } else {
+                format!("{joint}{point}")
+            }
+        })
+    }
+}
+
 /// What is wrong with a clearance.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -225,10 +247,7 @@ impl ClearanceJoint {
 
     /// Number of contact points.
     pub fn points(&self) -> usize {
-        match self.clearance.model {
-            ClearanceModel::Planar => 1,
-            ClearanceModel::Spatial { .. } => 2,
-        }
+        self.clearance.model.points()
     }
 
     /// Columns of a contact point in result files.

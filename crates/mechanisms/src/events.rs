@@ -5,6 +5,8 @@ use linkdyn_dynamics::{Instant, InternalState};
 
 /// When contacts are made and lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Switching {
     /// At the very time, which is located as the root of the gap.
     #[default]

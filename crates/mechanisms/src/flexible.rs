@@ -70,8 +70,9 @@ pub struct FlexibleLink {
 
 impl Linkage {
     /// Adds a flexible straight link: the rigid finite elements `NAME,0`, `NAME,1`, ... on ZYX turns `NAME.1`, `NAME.2`, ... with the
-    /// springs and dampers of the spring-damping elements \[Wittbrodt, Adamiec-Wójcik, Wojciech 2006\]. It bends and twists; the modified method neither
-    /// stretches nor shears.
+    /// springs and dampers of the spring-damping elements \[Wittbrodt, Adamiec-Wójcik, Wojciech 2006\]. It bends and twists; the
+    /// modified method neither stretches nor shears. ZYX turns are singular where theta is a right angle in one of them, far beyond
+    /// what their springs are meant for.
     ///
     /// The beam begins at the origin of the link's frame, which is that of element 0. Element r has its origin at
     /// spring-damping element r and, while nothing is bent, the axes of that frame. Twist belongs to the turn about the axis `along`

@@ -56,12 +56,9 @@ pub(crate) struct Contact {
 }
 
 impl Contact {
-    /// Name of one of its contact points.
-    pub fn point_name(&self, point: usize) -> String {
-        match self.joint.points() {
-            1 => self.name.clone(),
-            _ => format!("{}{}", self.name, point + 1),
-        }
+    /// Names of its contact points.
+    pub fn point_names(&self) -> impl Iterator<Item = String> + use<> {
+        self.joint.clearance.model.point_names(&self.name)
     }
 }
 
@@ -107,6 +104,17 @@ impl Mechanism {
         self.loops.iter().map(|cut| cut.name.as_str())
     }
 
+    /// Size of the force \[N\] in each cut joint by the multipliers of all loops; torques are left out.
+    pub fn loop_forces(&self, multipliers: &[f64]) -> impl Iterator<Item = f64> {
+        let mut rest = multipliers;
+        self.loops.iter().map(move |cut| {
+            let (own, others) = rest.split_at_checked(cut.components.len()).unwrap_or_default();
+            rest = others;
+            let forces = own.iter().zip(&cut.components).filter(|(_, c)| c.starts_with('f'));
+            forces.map(|(force, _)| force * force).sum::<f64>().sqrt()
+        })
+    }
+
     /// Names of the speeds on which joint friction acts, in the order of [`crate::Observation::friction`].
     pub fn friction_names(&self) -> impl Iterator<Item = &str> {
         let rubbing = self.joints.iter().filter(|joint| joint.has_friction);
@@ -115,8 +123,7 @@ impl Mechanism {
 
     /// Names of the contact points of joints with clearance, in the order of [`crate::Observation::contacts`].
     pub fn contact_names(&self) -> impl Iterator<Item = String> {
-        let contacts = self.contacts.iter();
-        contacts.flat_map(|contact| (0..contact.joint.points()).map(|point| contact.point_name(point)))
+        self.contacts.iter().flat_map(Contact::point_names)
     }
 
     /// Friction at each contact point.

@@ -122,8 +122,7 @@ impl Simulation {
         }
         names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
         for contact in &mechanism.contacts {
-            for point in 0..contact.joint.points() {
-                let name = contact.point_name(point);
+            for name in contact.point_names() {
                 names.extend(contact.joint.columns().map(|column| format!("contact.{name}.{column}")));
             }
         }

@@ -22,8 +22,8 @@ pub struct Plan {
     pub step: Option<f64>,
     /// Corrector iterations a step, where they are fixed.
     pub iterations: Option<u32>,
-    /// When contacts are made and lost: `located` or `at_steps`.
-    pub switching: &'static str,
+    /// When contacts are made and lost.
+    pub switching: Switching,
 }
 
 /// Methods with error control, and methods of fixed step.
@@ -97,7 +97,11 @@ impl Plan {
                 args.step
                     .unwrap_or(if args.as_published { PUBLISHED_STEP } else { STEP })
             }),
-            switching: if args.as_published { "at_steps" } else { "located" },
+            switching: if args.as_published {
+                Switching::AtSteps
+            } else {
+                Switching::Located
+            },
             iterations: args.iterations,
         })
     }
@@ -129,12 +133,11 @@ impl Plan {
     /// Makes a simulation keep its loops and switch its contacts as planned. Drift that a step may leave is a tenth of the
     /// tolerance, so that it never shows beside the error; with drift terms nothing is projected.
     pub fn set_up(&self, simulation: &mut Simulation) {
-        if self.switching == "at_steps" {
-            simulation.set_switching(Switching::AtSteps);
-            simulation.set_drift_tolerance(f64::INFINITY);
-        } else {
-            simulation.set_drift_tolerance(0.1 * self.atol.unwrap_or(0.0));
-        }
+        simulation.set_switching(self.switching);
+        simulation.set_drift_tolerance(match self.switching {
+            Switching::Located => 0.1 * self.atol.unwrap_or(0.0),
+            Switching::AtSteps => f64::INFINITY,
+        });
     }
 
     /// Tolerances for a simulation.

@@ -13,7 +13,7 @@ use linkdyn_mechanisms::dynamics::{Formulation, ReactionSolver};
 use linkdyn_mechanisms::integrators::Integration;
 use linkdyn_mechanisms::{MOST_ROWS, Mechanism, RunError, Scene, Seen, Simulation, State, run_watched};
 
-use crate::args::{ClearanceArg, FormulationArg, RunArgs};
+use crate::args::{BristleArg, ClearanceArg, FormulationArg, RunArgs};
 use crate::errors::CliError;
 use crate::interrupt::Interrupt;
 use crate::output;
@@ -258,6 +258,19 @@ fn default_folder(scene: &str, variant: &Variant) -> PathBuf {
             format!("flexible{}", variant.flexible.unwrap_or_default()),
         ),
         (variant.friction == Some(false), "no-friction".to_owned()),
+        (
+            variant.friction_scale.is_some(),
+            format!("scale{}", variant.friction_scale.unwrap_or_default()),
+        ),
+        (
+            variant.clearance_size.is_some(),
+            format!("size{}", variant.clearance_size.unwrap_or_default()),
+        ),
+        (
+            variant.bristle.is_some(),
+            variant.bristle.map(BristleArg::name).unwrap_or_default(),
+        ),
+        (variant.as_published, "as-published".to_owned()),
     ] {
         if given {
             name = format!("{name}-{part}");

@@ -21,8 +21,9 @@ pub struct Record {
     pub force: Vec<Vec<f64>>,
     /// Size of each joint's torque \[N m\].
     pub torque: Vec<Vec<f64>>,
-    /// Largest force of a loop's multipliers (norm) \[N\].
-    pub multipliers: f64,
+    /// Largest force in each cut joint by its multipliers \[N\].
+    pub loop_force: Vec<f64>,
+    mechanism: Option<Mechanism>,
     /// Energy balance at the start \[J\].
     balance: Option<f64>,
     /// Largest deviation of the energy balance from its start \[J\].
@@ -83,6 +84,8 @@ impl Record {
     pub fn new(mechanism: &Mechanism) -> Self {
         Self {
             coordinates: mechanism.coordinate_names().map(str::to_owned).collect(),
+            mechanism: Some(mechanism.clone()),
+            loop_force: vec![0.0; mechanism.loop_names().count()],
             ..Self::default()
         }
     }
@@ -153,8 +156,11 @@ impl Record {
         append(&mut self.v, o.v.iter().copied());
         append(&mut self.force, o.reactions.iter().map(|r| r.force.norm()));
         append(&mut self.torque, o.reactions.iter().map(|r| r.torque.norm()));
-        let norm = o.multipliers.iter().map(|x| x * x).sum::<f64>().sqrt();
-        self.multipliers = self.multipliers.max(norm);
+        if let Some(mechanism) = &self.mechanism {
+            for (most, force) in self.loop_force.iter_mut().zip(mechanism.loop_forces(&o.multipliers)) {
+                *most = most.max(force);
+            }
+        }
         let start = *self.balance.get_or_insert(o.energy_balance());
         self.energy_error = self.energy_error.max((o.energy_balance() - start).abs());
         self.violation.0 = self.violation.0.max(o.violation.0);

@@ -46,8 +46,8 @@ pub fn summary(scene: &Scene, mechanism: &Mechanism, record: &Record, outcome: &
     for (name, force) in mechanism.joint_names().zip(&record.force) {
         table.entry(&format!("peak force in {name}"), Cell::number(peak(force)), "N");
     }
-    for name in mechanism.loop_names() {
-        table.entry(&format!("peak force in {name}"), Cell::number(record.multipliers), "N");
+    for (name, force) in mechanism.loop_names().zip(&record.loop_force) {
+        table.entry(&format!("peak force in {name}"), Cell::number(*force), "N");
     }
     for (name, friction) in mechanism.friction_names().zip(&record.friction) {
         table.entry(&format!("peak friction on {name}"), Cell::number(*friction), "N m");
@@ -101,7 +101,9 @@ fn contacts(table: &mut Table, mechanism: &Mechanism, tally: &Tally) {
         let mut entry = |what: &str, value: f64, unit: &str| {
             table.entry(&format!("{what} in {name}"), Cell::number(value), unit);
         };
-        entry("time share in contact", point.contact_time(end) / (end - begin), "");
+        if end > begin {
+            entry("time share in contact", point.contact_time(end) / (end - begin), "");
+        }
         entry("mean normal force while in contact", point.mean_force(end), "N");
         entry("rms normal force while in contact", point.rms_force(end), "N");
         entry("peak normal force", point.peak_force, "N");
