@@ -19,6 +19,8 @@ pub struct Arguments {
 pub enum Command {
     /// Simulate a scene and write its results
     Run(Box<RunArgs>),
+    /// Measure methods on a scene: error against evaluations and time
+    Report(ReportArgs),
     /// List the built-in scenes
     Scenes(ScenesArgs),
 }
@@ -31,27 +33,9 @@ pub struct RunArgs {
     /// Folder for the results; an earlier run in it is replaced as a whole [default: below out/, named after scene and variant]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Take friction in the joints into account
-    #[arg(long, overrides_with = "no_friction")]
-    pub friction: bool,
-    /// Leave friction out
-    #[arg(long)]
-    pub no_friction: bool,
-    /// Factor on all coefficients of friction (rsrrr)
-    #[arg(long, value_name = "FACTOR", value_parser = factor)]
-    pub friction_scale: Option<f64>,
-    /// Give joint R clearance, with contact and friction (rsup)
-    #[arg(long, value_enum, value_name = "MODEL")]
-    pub clearance: Option<ClearanceArg>,
-    /// Radius of the hole less that of the pin, in metres (rsup) [default: 0.001]
-    #[arg(long, value_name = "METRES", value_parser = positive)]
-    pub clearance_size: Option<f64>,
-    /// Bristle model of friction in the clearance joint (rsup) [default: lugre]
-    #[arg(long, value_enum, value_name = "MODEL")]
-    pub bristle: Option<BristleArg>,
-    /// Make the coupler flexible, with N spring-damping elements and N + 1 rigid finite elements (rsup)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=500))]
-    pub flexible: Option<u16>,
+    /// What to switch in the scene.
+    #[command(flatten)]
+    pub variant: VariantArgs,
     /// The second paper's own way (rsup): rk4 with a step of 5e-6 s, drift terms with alpha = 100 and beta = 50 in place of
     /// projection, contacts made and lost at the ends of steps
     #[arg(long)]
@@ -86,6 +70,58 @@ pub struct RunArgs {
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub every: Option<f64>,
     /// Print the summary as JSON, and no progress
+    #[arg(long)]
+    pub json: bool,
+    /// Print no progress
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Options that switch something in a scene.
+#[derive(Debug, Args)]
+pub struct VariantArgs {
+    /// Take friction in the joints into account
+    #[arg(long, overrides_with = "no_friction")]
+    pub friction: bool,
+    /// Leave friction out
+    #[arg(long)]
+    pub no_friction: bool,
+    /// Factor on all coefficients of friction (rsrrr)
+    #[arg(long, value_name = "FACTOR", value_parser = factor)]
+    pub friction_scale: Option<f64>,
+    /// Give joint R clearance, with contact and friction (rsup)
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub clearance: Option<ClearanceArg>,
+    /// Radius of the hole less that of the pin, in metres (rsup) [default: 0.001]
+    #[arg(long, value_name = "METRES", value_parser = positive)]
+    pub clearance_size: Option<f64>,
+    /// Bristle model of friction in the clearance joint (rsup) [default: lugre]
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub bristle: Option<BristleArg>,
+    /// Make the coupler flexible, with N spring-damping elements and N + 1 rigid finite elements (rsup)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=500))]
+    pub flexible: Option<u16>,
+}
+
+/// Options of `linkdyn report`.
+#[derive(Debug, Args)]
+pub struct ReportArgs {
+    /// Name of a built-in scene (see `linkdyn scenes`)
+    pub scene: String,
+    /// Folder for the report; an earlier run or report in it is replaced as a whole [default: out/report-, and the name of scene
+    /// and variant]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What to switch in the scene.
+    #[command(flatten)]
+    pub variant: VariantArgs,
+    /// Simulated time at which to stop, in seconds [default: the scene's]
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub until: Option<f64>,
+    /// Time on the clock that all runs together may take, in seconds; what does not fit is listed as not run
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 120.0)]
+    pub budget: f64,
+    /// Print the report as JSON, and no progress
     #[arg(long)]
     pub json: bool,
     /// Print no progress
@@ -182,7 +218,7 @@ mod tests {
         let words = ["linkdyn", "run"].iter().chain(options);
         match Arguments::try_parse_from(words)?.command {
             Command::Run(args) => Ok(*args),
-            Command::Scenes(_) => panic!("`run` was parsed as `scenes`"),
+            _ => panic!("`run` was parsed as another command"),
         }
     }
 
@@ -216,7 +252,7 @@ mod tests {
         .expect("valid options");
         assert_eq!(args.scene, "rsrrr");
         assert_eq!(args.out, Some(PathBuf::from("x")));
-        assert!(args.friction && args.json && args.quiet);
+        assert!(args.variant.friction && args.json && args.quiet);
         assert_eq!(args.method.as_deref(), Some("radau"));
         assert_eq!(
             (args.rtol, args.atol, args.step),

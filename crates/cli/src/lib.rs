@@ -7,6 +7,7 @@ pub mod interrupt;
 pub mod machine;
 pub mod output;
 pub mod progress;
+pub mod report;
 pub mod results;
 pub mod run;
 pub mod scenes;

@@ -8,6 +8,7 @@ use linkdyn_cli::args::{Arguments, Command};
 fn main() -> ExitCode {
     linkdyn_cli::errors::exit(match Arguments::parse().command {
         Command::Run(args) => linkdyn_cli::run::run(&args),
+        Command::Report(args) => linkdyn_cli::report::report(&args),
         Command::Scenes(args) => linkdyn_cli::scenes::list(&args),
     })
 }

@@ -5,7 +5,7 @@ use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, bristle, rsrrr, 
 use linkdyn_mechanisms::dynamics::Baumgarte;
 use linkdyn_mechanisms::friction::{Bristle, BristleStart, ElastoPlastic, Guard, LuGre};
 
-use crate::args::{BristleArg, ClearanceArg, RunArgs, ScenesArgs};
+use crate::args::{BristleArg, ClearanceArg, ScenesArgs, VariantArgs};
 use crate::errors::CliError;
 use crate::output;
 use crate::summary::{Cell, Table};
@@ -30,9 +30,9 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// What the command line asks for.
+    /// What the command line asks for; `as_published` is asked for apart.
     #[must_use]
-    pub fn new(args: &RunArgs) -> Self {
+    pub fn new(args: &VariantArgs, as_published: bool) -> Self {
         Self {
             friction: (args.friction || args.no_friction).then_some(args.friction),
             friction_scale: args.friction_scale,
@@ -40,7 +40,7 @@ impl Variant {
             clearance_size: args.clearance_size,
             bristle: args.bristle,
             flexible: args.flexible,
-            as_published: args.as_published,
+            as_published,
         }
     }
 

@@ -198,3 +198,85 @@ fn wrong_names_and_options_tell_what_would_be_right() {
         assert!(!out.exists(), "nothing is written");
     }
 }
+
+#[test]
+fn a_report_has_certified_errors_that_fall_with_the_tolerance() {
+    let folder = folder();
+    let out = folder.path().join("report");
+    let words = |until| {
+        [
+            "report",
+            "rsrrr",
+            "--friction",
+            "--until",
+            until,
+            "--budget",
+            "40",
+            "--json",
+            "--out",
+        ]
+    };
+    let report = |until| linkdyn(&[&words(until)[..], &[&out.to_string_lossy()]].concat());
+    // The folder is replaced as a whole.
+    assert_eq!(code(&report("0.01")), 0);
+    let printed = report("0.2");
+    assert_eq!(code(&printed), 0, "{}", String::from_utf8_lossy(&printed.stderr));
+    let printed: serde_json::Value = serde_json::from_slice(&printed.stdout).expect("JSON and nothing else");
+    let written: serde_json::Value = serde_json::from_str(&text(&out.join("report.json"))).expect("JSON");
+    assert_eq!(printed, written);
+    assert_eq!(
+        (&written["until"], &written["reference"]["horizon"]),
+        (&0.2.into(), &0.2.into())
+    );
+    let accuracy = written["reference"]["accuracy"]["positions"]
+        .as_f64()
+        .expect("a number");
+    assert!(accuracy > 0.0 && accuracy < 1e-9, "{accuracy}");
+    let rows = written["rows"].as_array().expect("rows");
+    let error = |method: &str, tolerance: f64| {
+        let same = |row: &&serde_json::Value| {
+            row["integration"]["method"] == method && row["integration"]["rtol"].as_f64() == Some(tolerance)
+        };
+        let positions = &rows.iter().find(same).expect("a row")["errors"]["positions"];
+        let number = positions.get("value").or(positions.get("below"));
+        number.and_then(serde_json::Value::as_f64).expect("an error or a bound")
+    };
+    assert!(rows.iter().all(|row| row["outcome"] == "done"), "{rows:#?}");
+    for method in ["adams", "dop853", "dopri5", "radau5"] {
+        assert!(error(method, 1e-10) < 0.1 * error(method, 1e-6), "{method}");
+        assert!(error(method, 1e-12) >= accuracy, "{method}");
+    }
+    let papers: Vec<_> = rows.iter().filter(|row| row["papers_way"] == true).collect();
+    assert_eq!(papers.len(), 1);
+    assert_eq!(papers[0]["integration"]["method"], "newmark");
+    assert_eq!(papers[0]["ratio_to_papers_way"]["evaluations"], 1.0);
+    let table = text(&out.join("report.csv"));
+    assert_eq!(table.lines().count(), 1 + rows.len());
+    assert!(table.lines().all(|line| line.split(',').count() == 21));
+    for picture in ["error-evaluations", "error-time", "reference"] {
+        assert!(
+            text(&out.join(format!("{picture}.svg"))).starts_with("<svg"),
+            "{picture}"
+        );
+        assert!(out.join(format!("{picture}.png")).is_file(), "{picture}");
+    }
+}
+
+#[test]
+fn a_report_beyond_its_means_tells_so() {
+    let folder = folder();
+    let out = folder.path().join("report");
+    let out_text = out.to_string_lossy();
+    let cases: [(&[&str], i32, &str); 4] = [
+        (&["rsrrr", "--budget", "1e-9"], 1, "--budget"),
+        (&["rsrrr", "--friction", "--friction-scale", "2"], 1, "--until"),
+        (&["rsrrr", "--clearance", "planar"], 2, "rsup"),
+        (&["rsrrr", "--budget", "0"], 2, "greater than zero"),
+    ];
+    for (words, expected, said) in cases {
+        let report = linkdyn(&[&["report"], words, &["--out", &out_text]].concat());
+        let error = String::from_utf8_lossy(&report.stderr);
+        assert!(code(&report) == expected && error.contains(said), "{words:?}: {error}");
+        assert!(!out.exists(), "nothing is written");
+    }
+}

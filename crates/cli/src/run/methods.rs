@@ -37,10 +37,12 @@ const STIFF_TOLERANCE: f64 = 1e-9;
 /// Loosest tolerance taken without a word: the start of RSRRR is an unstable equilibrium, and a loose run may fall to the
 /// wrong side.
 const LOOSEST: f64 = 1e-4;
+/// Most drift that a step may leave, whatever the tolerance: far less than what counts as having left the loops.
+const MOST_DRIFT: f64 = 1e-7;
 /// Default fixed step \[s\].
-const STEP: f64 = 1e-4;
+pub(crate) const STEP: f64 = 1e-4;
 /// Fixed step of the paper on clearance \[s\].
-const PUBLISHED_STEP: f64 = 5e-6;
+pub(crate) const PUBLISHED_STEP: f64 = 5e-6;
 
 impl Plan {
     /// What the command line asks for.
@@ -51,7 +53,7 @@ impl Plan {
         let method = match (&args.method, args.as_published) {
             (None, true) => "rk4",
             // Contacts and elastic links are stiff.
-            (None, false) if args.clearance.is_some() || args.flexible.is_some() => "radau5",
+            (None, false) if args.variant.clearance.is_some() || args.variant.flexible.is_some() => "radau5",
             (None, false) => "adams",
             (Some(name), false) => name,
             (Some(_), true) => {
@@ -135,7 +137,7 @@ impl Plan {
     pub fn set_up(&self, simulation: &mut Simulation) {
         simulation.set_switching(self.switching);
         simulation.set_drift_tolerance(match self.switching {
-            Switching::Located => 0.1 * self.atol.unwrap_or(0.0),
+            Switching::Located => (0.1 * self.atol.unwrap_or(0.0)).min(MOST_DRIFT),
             Switching::AtSteps => f64::INFINITY,
         });
     }

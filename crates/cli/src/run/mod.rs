@@ -30,10 +30,10 @@ use report::Outcome;
 const ROWS: f64 = 500.0;
 
 /// A scene ready to run.
-struct Prepared {
-    scene: Scene,
-    mechanism: Mechanism,
-    start: State,
+pub(crate) struct Prepared {
+    pub scene: Scene,
+    pub mechanism: Mechanism,
+    pub start: State,
 }
 
 /// `linkdyn run`.
@@ -42,8 +42,8 @@ struct Prepared {
 /// Wrong usage, a scene that cannot start, a run that ends early (its rows are written), a folder that cannot be written.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let plan = Plan::new(args)?;
-    let variant = Variant::new(args);
-    let prepared = prepare(args, &variant)?;
+    let variant = Variant::new(&args.variant, args.as_published);
+    let prepared = prepare(&args.scene, &variant, args.friction_sweeps, args.formulation)?;
     let until = args.until.unwrap_or(prepared.scene.until);
     let grid = (until, args.every.unwrap_or(until / ROWS));
     if grid.0 / grid.1 > MOST_ROWS as f64 {
@@ -122,16 +122,22 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Builds the scene with what the command line switched, and closes its loops.
-fn prepare(args: &RunArgs, variant: &Variant) -> Result<Prepared, CliError> {
-    let mut scene = scenes::find(&args.scene)?.scene(variant)?;
-    if let Some(sweeps) = args.friction_sweeps {
+/// Builds the scene with what the command line switched, and closes its loops. `sweeps` asks for the friction loop by that many sweeps
+/// in place of solving it.
+pub(crate) fn prepare(
+    name: &str,
+    variant: &Variant,
+    sweeps: Option<usize>,
+    formulation: FormulationArg,
+) -> Result<Prepared, CliError> {
+    let mut scene = scenes::find(name)?.scene(variant)?;
+    if let Some(sweeps) = sweeps {
         scene.linkage.reaction_solver = ReactionSolver::Sweeps { sweeps };
     }
-    if args.formulation == FormulationArg::Lagrange {
+    if formulation == FormulationArg::Lagrange {
         scene.linkage.formulation = Formulation::Lagrange;
     }
-    let wrong = |what: &str| CliError::usage(format!("scene `{}` {what}", args.scene));
+    let wrong = |what: &str| CliError::usage(format!("scene `{name}` {what}"));
     let mechanism = scene
         .linkage
         .build()
@@ -203,7 +209,7 @@ fn compare(
         return Vec::new();
     };
     let others = entry.beside(variant).into_iter().filter_map(|other| {
-        let prepared = prepare(args, &other).ok()?;
+        let prepared = prepare(&args.scene, &other, args.friction_sweeps, args.formulation).ok()?;
         let (record, ..) = simulate(&prepared, plan, (reached, grid.1), |_| flow(interrupt)).ok()?;
         Some((other, record))
     });
@@ -247,7 +253,8 @@ fn draw(
     pictures::draw(folder, &names, &curves)
 }
 
-fn default_folder(scene: &str, variant: &Variant) -> PathBuf {
+/// Where results go if nothing is said.
+pub(crate) fn default_folder(scene: &str, variant: &Variant) -> PathBuf {
     let mut name = scene.to_owned();
     for (given, part) in [
         (variant.friction == Some(true), "friction".to_owned()),
@@ -280,7 +287,7 @@ fn default_folder(scene: &str, variant: &Variant) -> PathBuf {
 }
 
 /// A path as the user would write it: relative where it lies below the working directory.
-fn shown(path: &std::path::Path) -> String {
+pub(crate) fn shown(path: &std::path::Path) -> String {
     let here = std::env::current_dir().ok();
     let short = here.and_then(|here| path.strip_prefix(&here).ok());
     short.unwrap_or(path).display().to_string()

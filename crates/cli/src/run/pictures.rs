@@ -170,7 +170,7 @@ fn panel<'a>(label: String, curves: &[Curve<'a>], pick: impl Fn(&'a Record) -> O
     })
 }
 
-fn save(folder: &mut RunFolder, name: &str, figure: &Figure) -> Result<(), CliError> {
+pub(crate) fn save(folder: &mut RunFolder, name: &str, figure: &Figure) -> Result<(), CliError> {
     let svg = figure.to_svg()?;
     folder.write(&format!("{name}.png"), crate::figure::svg_to_png(&svg, PNG_SCALE)?)?;
     folder.write(&format!("{name}.svg"), svg)?;
