@@ -173,7 +173,7 @@ fn wrong_names_and_options_tell_what_would_be_right() {
     let folder = folder();
     let out = folder.path().join("run");
     let out_text = out.to_string_lossy();
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 21] = [
         (&["rsrr"], "did you mean `rsrrr`"),
         (&["rsrrr", "--method", "adam"], "did you mean `adams`"),
         (&["rsrrr", "--method", "rk4", "--rtol", "1e-8"], "--step"),
@@ -183,6 +183,30 @@ fn wrong_names_and_options_tell_what_would_be_right() {
         (&["rsrrr", "--atol", "10"], "too loose"),
         (&["rsrrr", "--every", "1e-12"], "--every"),
         (&["rsrrr", "--friction", "--friction-scale", "1e300"], "1000"),
+        (&["rsrrr", "--clearance", "planar"], "scenes that have it: rsup"),
+        (&["rsrrr", "--flexible", "2"], "scenes that have it: rsup"),
+        (&["rsrrr", "--as-published"], "scenes that have it: rsup"),
+        (&["rsup", "--friction-scale", "2"], "scenes that have it: rsrrr"),
+        (&["rsup", "--bristle", "cap"], "add `--clearance planar`"),
+        (&["rsup", "--clearance-size", "1e-4"], "add `--clearance planar`"),
+        (&["rsup", "--clearance", "round"], "planar"),
+        (
+            &["rsup", "--clearance", "planar", "--clearance-size", "0"],
+            "greater than zero",
+        ),
+        (
+            &["rsup", "--clearance", "planar", "--clearance-size=-1e-3"],
+            "greater than zero",
+        ),
+        (
+            &["rsup", "--clearance", "planar", "--bristle", "brush"],
+            "elasto-plastic",
+        ),
+        (
+            &["rsup", "--method", "adams", "--as-published"],
+            "leave one of them out",
+        ),
+        (&["rsup", "--flexible", "0"], "1..=500"),
     ];
     for (words, expected) in cases {
         let words: Vec<&str> = ["run"]
@@ -279,4 +303,151 @@ fn a_report_beyond_its_means_tells_so() {
         assert!(code(&report) == expected && error.contains(said), "{words:?}: {error}");
         assert!(!out.exists(), "nothing is written");
     }
+}
+
+/// Runs RSUP with options; tells the folder's header and rows of `states.csv`, and what was printed.
+fn rsup(options: &[&str], out: &std::path::Path) -> (Vec<String>, Vec<Vec<f64>>, String) {
+    let out_text = out.to_string_lossy();
+    let words: Vec<&str> = ["run", "rsup", "--out", &out_text]
+        .into_iter()
+        .chain(options.iter().copied())
+        .collect();
+    let run = linkdyn(&words);
+    assert_eq!(code(&run), 0, "{words:?}: {}", String::from_utf8_lossy(&run.stderr));
+    let states = text(&out.join("states.csv"));
+    let mut lines = states.lines();
+    let head = lines.next().expect("a header").split(',').map(str::to_owned).collect();
+    let rows = lines.map(|line| line.split(',').map(|x| x.parse().expect("a number")).collect());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    (head, rows, String::from_utf8_lossy(&run.stdout).into_owned())
+}
+
+/// The columns of RSUP in the order of the format.
+fn columns(multipliers: &[&str], contacts: &[&str], bristles: &[&str]) -> Vec<String> {
+    let coordinates = ["psi11", "psi12", "theta12", "phi12", "z21", "psi22"];
+    let of = |kind: &str| coordinates.map(|name| format!("{kind}.{name}"));
+    let mut all = vec!["t".to_owned()];
+    all.extend(["q", "v", "a"].iter().flat_map(|kind| of(kind)));
+    all.extend(multipliers.iter().map(|component| format!("lambda.R.{component}")));
+    for contact in contacts {
+        let columns = ["depth", "rate", "normal", "tangent", "bristle", "impact_speed"];
+        let columns = columns.iter().chain(bristles);
+        all.extend(columns.map(|column| format!("contact.{contact}.{column}")));
+    }
+    all.extend(["kinetic", "potential", "elastic", "work"].map(|name| format!("energy.{name}")));
+    all.extend(["position", "velocity"].map(|name| format!("violation.{name}")));
+    all
+}
+
+#[test]
+fn rsup_writes_the_columns_of_each_of_its_joints() {
+    let folder = folder();
+    let short = ["--until", "0.06", "--every", "0.0001", "--rtol", "1e-7"];
+    let with = |more: &[&'static str]| [&short[..], more].concat();
+
+    let (head, rows, said) = rsup(&short, &folder.path().join("ideal"));
+    assert_eq!(head, columns(&["fx", "fy", "fz", "n1", "n2"], &[], &[]));
+    assert_eq!(rows.len(), 601);
+    assert!(!said.contains("contact") && !folder.path().join("ideal/events.csv").exists());
+
+    let (head, rows, said) = rsup(&with(&["--clearance", "planar"]), &folder.path().join("planar"));
+    assert_eq!(head, columns(&["f1", "n1", "n2"], &["R"], &[]));
+    let place = |name: &str| head.iter().position(|column| column == name).expect(name);
+    let (depth, normal, speed) = (
+        place("contact.R.depth"),
+        place("contact.R.normal"),
+        place("contact.R.impact_speed"),
+    );
+    assert!(rows.iter().any(|row| row[normal] > 0.0));
+    for row in &rows {
+        assert!(row[normal] >= 0.0 && row.iter().all(|x| x.is_finite()));
+        assert_eq!(row[depth] > 0.0, row[speed] > 0.0, "t = {}", row[0]);
+    }
+    assert!(
+        said.contains("impacts in R") && said.contains("greatest penetration in R"),
+        "{said}"
+    );
+    assert!(!said.contains("contacts held"), "{said}");
+
+    let (head, ..) = rsup(&with(&["--clearance", "spatial"]), &folder.path().join("spatial"));
+    let axial = ["tangent_axial", "bristle_axial"];
+    assert_eq!(head, columns(&["f1"], &["R1", "R2"], &axial));
+
+    let (head, ..) = rsup(&with(&["--flexible", "2"]), &folder.path().join("flexible"));
+    for name in ["q.psi12.1", "v.theta12.2", "a.phi12.2"] {
+        assert!(head.iter().any(|column| column == name), "{name}");
+    }
+    assert!(!head.iter().any(|column| column == "q.psi12.3"));
+}
+
+#[test]
+fn events_are_written_in_the_order_of_time() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    rsup(
+        &[
+            "--clearance",
+            "planar",
+            "--until",
+            "2.02",
+            "--every",
+            "0.1",
+            "--rtol",
+            "1e-7",
+        ],
+        &out,
+    );
+    let events = text(&out.join("events.csv"));
+    let mut lines = events.lines();
+    assert_eq!(lines.next(), Some("t,kind,name,speed"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let time = |row: &[&str]| -> f64 { row[0].parse().expect("a time") };
+    assert!(rows.windows(2).all(|pair| time(&pair[0]) <= time(&pair[1])));
+    let stops: Vec<_> = rows.iter().filter(|row| row[1] == "stop").collect();
+    assert_eq!(stops.len(), 1);
+    assert_eq!((time(stops[0]), stops[0][2], stops[0][3]), (2.0, "drive", ""));
+    let contacts: Vec<_> = rows.iter().filter(|row| row[1] != "stop").collect();
+    assert!(contacts.len() > 10);
+    for (k, row) in contacts.iter().enumerate() {
+        assert_eq!((row[1], row[2]), (["contact_made", "contact_lost"][k % 2], "R"));
+        assert!(row[3].parse::<f64>().expect("a speed") > 0.0);
+    }
+}
+
+#[test]
+fn the_published_way_runs_and_says_how() {
+    let folder = folder();
+    let out = folder.path().join("run");
+    let options = [
+        "--as-published",
+        "--clearance",
+        "planar",
+        "--until",
+        "0.03",
+        "--every",
+        "0.0001",
+    ];
+    let (head, rows, _) = rsup(&options, &out);
+    let manifest: serde_json::Value = serde_json::from_str(&text(&out.join("run.json"))).expect("JSON");
+    let plan = &manifest["integration"];
+    assert_eq!(plan["method"], "rk4");
+    assert_eq!(plan["step"], 5e-6);
+    assert_eq!(plan["switching"], "at_steps");
+    assert_eq!(manifest["scene"]["linkage"]["baumgarte"]["alpha"], 100.0);
+    assert_eq!(
+        manifest["counters"]["evaluations"].as_u64().map(|n| n / 4 / 1000),
+        Some(6)
+    );
+    let normal = head
+        .iter()
+        .position(|column| column == "contact.R.normal")
+        .expect("a column");
+    assert!(rows.iter().any(|row| row[normal] > 0.0));
+    let events = text(&out.join("events.csv"));
+    // Contacts are made at the ends of steps.
+    for line in events.lines().skip(1) {
+        let t: f64 = line.split(',').next().expect("t").parse().expect("a time");
+        assert!((t / 5e-6 - (t / 5e-6).round()).abs() < 1e-6, "{t}");
+    }
+    assert!(events.lines().count() > 1);
 }
