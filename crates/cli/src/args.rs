@@ -51,7 +51,8 @@ pub struct RunArgs {
     /// step rk4, newmark [default: radau5 with clearance or a flexible link, else adams]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12, radau5 1e-9]
+    /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12, radau5
+    /// 1e-9, with clearance 1e-6 of it]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub rtol: Option<f64>,
     /// Absolute tolerance of adaptive methods [default: that of --rtol]

@@ -173,7 +173,7 @@ fn wrong_names_and_options_tell_what_would_be_right() {
     let folder = folder();
     let out = folder.path().join("run");
     let out_text = out.to_string_lossy();
-    let cases: [(&[&str], &str); 21] = [
+    let cases: [(&[&str], &str); 22] = [
         (&["rsrr"], "did you mean `rsrrr`"),
         (&["rsrrr", "--method", "adam"], "did you mean `adams`"),
         (&["rsrrr", "--method", "rk4", "--rtol", "1e-8"], "--step"),
@@ -181,6 +181,7 @@ fn wrong_names_and_options_tell_what_would_be_right() {
         (&["rsrrr", "--iterations", "3"], "newmark"),
         (&["rsrrr", "--rtol", "0.1"], "too loose"),
         (&["rsrrr", "--atol", "10"], "too loose"),
+        (&["rsup", "--clearance", "planar", "--rtol", "1e-5"], "give at most"),
         (&["rsrrr", "--every", "1e-12"], "--every"),
         (&["rsrrr", "--friction", "--friction-scale", "1e300"], "1000"),
         (&["rsrrr", "--clearance", "planar"], "scenes that have it: rsup"),

@@ -18,7 +18,7 @@ pub enum Switching {
 /// A contact made or lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactEvent {
-    /// Contact point, in the order of [`Mechanism::contact_names`].
+    /// Contact point, in the order of [`Mechanism::contact_names`](crate::Mechanism::contact_names).
     pub point: usize,
     /// Whether it is made, else lost.
     pub made: bool,

@@ -34,6 +34,11 @@ const FIXED: [&str; 2] = ["rk4", "newmark"];
 const TOLERANCE: f64 = 1e-12;
 /// Default tolerance of methods for stiff scenes, whose steps are of low order: 1e-12 would take them millions.
 const STIFF_TOLERANCE: f64 = 1e-9;
+/// Default and loosest tolerance with clearance, in clearances: penetrations are a thousandth of one to a hundredth.
+const CONTACT_TOLERANCE: f64 = 1e-6;
+const CONTACT_LOOSEST: f64 = 1e-4;
+/// Radial clearance where none is given \[m\]: that of the scene.
+const CLEARANCE: f64 = 1e-3;
 /// Loosest tolerance taken without a word: the start of RSRRR is an unstable equilibrium, and a loose run may fall to the
 /// wrong side.
 const LOOSEST: f64 = 1e-4;
@@ -83,12 +88,20 @@ impl Plan {
         if method != "newmark" && args.iterations.is_some() {
             return misplaced("--iterations", "only newmark has a corrector to iterate");
         }
-        let usual = if method == "radau5" { STIFF_TOLERANCE } else { TOLERANCE };
+        let clearance = args
+            .variant
+            .clearance
+            .map(|_| args.variant.clearance_size.unwrap_or(CLEARANCE));
+        let (usual, loosest) = match clearance {
+            Some(size) => (CONTACT_TOLERANCE * size, CONTACT_LOOSEST * size),
+            None if method == "radau5" => (STIFF_TOLERANCE, LOOSEST),
+            None => (TOLERANCE, LOOSEST),
+        };
         let rtol = args.rtol.unwrap_or(usual);
         for (name, tolerance) in [("rtol", rtol), ("atol", args.atol.unwrap_or(rtol))] {
-            if tolerance > LOOSEST {
+            if tolerance > loosest {
                 let message = format!("{name} = {tolerance} is too loose: the result would mean nothing");
-                return Err(CliError::usage(message).with_hint(format!("give at most {LOOSEST}")));
+                return Err(CliError::usage(message).with_hint(format!("give at most {loosest:e}")));
             }
         }
         Ok(Self {
