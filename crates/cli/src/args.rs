@@ -21,6 +21,8 @@ pub enum Command {
     Run(Box<RunArgs>),
     /// Measure methods on a scene: error against evaluations and time
     Report(ReportArgs),
+    /// Find where methods stop being stable on a scene, and what limits them
+    Stability(StabilityArgs),
     /// List the built-in scenes
     Scenes(ScenesArgs),
 }
@@ -123,6 +125,32 @@ pub struct ReportArgs {
     #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 120.0)]
     pub budget: f64,
     /// Print the report as JSON, and no progress
+    #[arg(long)]
+    pub json: bool,
+    /// Print no progress
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Options of `linkdyn stability`.
+#[derive(Debug, Args)]
+pub struct StabilityArgs {
+    /// Name of a built-in scene (see `linkdyn scenes`)
+    pub scene: String,
+    /// Folder for the tables; an earlier run in it is replaced as a whole [default: out/stability-, and the name of scene and
+    /// variant]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What to switch in the scene.
+    #[command(flatten)]
+    pub variant: VariantArgs,
+    /// Simulated time at which runs other than long ones stop, in seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 0.2)]
+    pub until: f64,
+    /// Time on the clock that all runs together may take, in seconds; what does not fit is listed as not run
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 120.0)]
+    pub budget: f64,
+    /// Print the tables as JSON, and no progress
     #[arg(long)]
     pub json: bool,
     /// Print no progress

@@ -11,4 +11,5 @@ pub mod report;
 pub mod results;
 pub mod run;
 pub mod scenes;
+pub mod stability;
 pub mod summary;

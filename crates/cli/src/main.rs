@@ -9,6 +9,7 @@ fn main() -> ExitCode {
     linkdyn_cli::errors::exit(match Arguments::parse().command {
         Command::Run(args) => linkdyn_cli::run::run(&args),
         Command::Report(args) => linkdyn_cli::report::report(&args),
+        Command::Stability(args) => linkdyn_cli::stability::stability(&args),
         Command::Scenes(args) => linkdyn_cli::scenes::list(&args),
     })
 }

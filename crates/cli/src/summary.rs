@@ -143,6 +143,32 @@ impl Table {
         text
     }
 
+    /// The table as CSV: names of columns with their units, blanks made underscores; numbers with all digits, empty cells empty.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let quoted = |text: &str| match text.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", text.replace('"', "\"\"")),
+            false => text.to_owned(),
+        };
+        let head = self.columns.iter().map(|(name, unit)| match unit.as_str() {
+            "" => quoted(&name.replace(' ', "_")),
+            unit => quoted(&format!("{name} ({unit})").replace(' ', "_")),
+        });
+        let mut text = head.collect::<Vec<_>>().join(",");
+        text.push('\n');
+        for row in &self.rows {
+            let cells = row.iter().map(|cell| match cell {
+                Cell::Number(x) => format!("{x:e}"),
+                Cell::Count(n) => n.to_string(),
+                Cell::Text(text) => quoted(text),
+                Cell::Empty => String::new(),
+            });
+            text += &cells.collect::<Vec<_>>().join(",");
+            text.push('\n');
+        }
+        text
+    }
+
     /// The table as JSON: its name, the units of its columns, and one object for each row.
     #[must_use]
     pub fn to_json(&self) -> Value {
@@ -271,6 +297,15 @@ spherical         -0.25
         assert_eq!(json["rows"][0]["a"], 0.1 + 0.2);
         assert_eq!(json["rows"][1]["a"], "NaN");
         assert_eq!(json["units"]["a"], "m");
+    }
+
+    #[test]
+    fn csv_has_all_digits_and_quotes_what_needs_it() {
+        let mut table = Table::new("x", &[("a step", "s"), ("b", ""), ("c", "")]);
+        table.row([Cell::number(0.1 + 0.2), Cell::text("no, \"yes\"")]);
+        table.row([Cell::number(f64::NAN), Cell::Empty, Cell::count(12_345)]);
+        let expected = "a_step_(s),b,c\n3.0000000000000004e-1,\"no, \"\"yes\"\"\",\nNaN,,12345\n";
+        assert_eq!(table.to_csv(), expected);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod build;
 pub mod catalogue;
+mod change;
 mod check;
 mod clearance;
 mod drive;

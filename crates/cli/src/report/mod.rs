@@ -2,7 +2,7 @@
 
 mod candidates;
 mod figures;
-mod measure;
+pub(crate) mod measure;
 mod pictures;
 mod reference;
 mod tables;

@@ -27,8 +27,8 @@ pub struct Plan {
 }
 
 /// Methods with error control, and methods of fixed step.
-const ADAPTIVE: [&str; 4] = ["adams", "dop853", "dopri5", "radau5"];
-const FIXED: [&str; 2] = ["rk4", "newmark"];
+pub(crate) const ADAPTIVE: [&str; 4] = ["adams", "dop853", "dopri5", "radau5"];
+pub(crate) const FIXED: [&str; 2] = ["rk4", "newmark"];
 
 /// Default tolerance, relative and absolute \[rad, m, rad/s, m/s\].
 const TOLERANCE: f64 = 1e-12;

@@ -137,7 +137,12 @@ pub(crate) fn prepare(
     if formulation == FormulationArg::Lagrange {
         scene.linkage.formulation = Formulation::Lagrange;
     }
-    let wrong = |what: &str| CliError::usage(format!("scene `{name}` {what}"));
+    ready(scene)
+}
+
+/// Builds a scene and closes its loops.
+pub(crate) fn ready(scene: Scene) -> Result<Prepared, CliError> {
+    let wrong = |what: &str| CliError::usage(format!("scene `{}` {what}", scene.name));
     let mechanism = scene
         .linkage
         .build()
