@@ -15,12 +15,12 @@ use linkdyn_mechanisms::{RunError, Seen, Simulation, run_watched};
 
 use crate::report::measure::{Halt, Limit};
 use crate::run::Prepared;
-use crate::run::methods::Plan;
+use crate::run::methods::{PUBLISHED_STEP, Plan, STEP};
 
 use super::plans::{is_fixed, methods, plan, tolerance};
 
-/// Fixed step \[s\].
-const STEP: f64 = 1e-4;
+/// Fixed step \[s\], and with clearance: the program's own.
+const STEPS: [f64; 2] = [STEP, PUBLISHED_STEP];
 /// Fewest threads, however few the machine has.
 const FEWEST: usize = 2;
 /// Most threads: more tell nothing new.
@@ -189,12 +189,13 @@ pub fn rows(prepared: &Prepared, until: f64, limit: &Limit, heard: &mut dyn FnMu
     let threads = thread::available_parallelism()
         .map_or(FEWEST, usize::from)
         .clamp(FEWEST, MOST);
+    let step = STEPS[usize::from(prepared.mechanism.clearances().next().is_some())];
     let count = methods().count();
     let mut rows = Vec::new();
     for (i, method) in methods().enumerate() {
         let limit = limit.part(1.0 / (count - i) as f64);
         let setting = if is_fixed(method) {
-            STEP.min(0.1 * until)
+            step.min(0.1 * until)
         } else {
             tolerance(prepared)
         };

@@ -8,8 +8,8 @@ use crate::errors::CliError;
 use crate::run::{Prepared, ready};
 use crate::scenes::{self, Variant};
 
-/// The link that becomes light: the last before the cut in both scenes.
-const LIGHT: &str = "2,2";
+/// The link that becomes light, the first of these that there is: one that a loop carries between heavier ones.
+const LIGHT: [&str; 2] = ["1,2", "2,2"];
 /// Numbers of spring-damping elements, in place of factors.
 const ELEMENTS: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 /// Factors on all others.
@@ -122,7 +122,8 @@ impl Quantity {
                 }
             }
             Self::MassRatio => {
-                if let Some(inertia) = linkage.inertia_mut(LIGHT) {
+                let light = LIGHT.into_iter().find(|name| linkage.inertia_mut(name).is_some());
+                if let Some(inertia) = light.and_then(|name| linkage.inertia_mut(name)) {
                     inertia.mass /= factor;
                     inertia.about_com /= factor;
                     count += 1;
@@ -236,7 +237,7 @@ mod tests {
             .scene
             .linkage
             .clone()
-            .inertia_mut(LIGHT)
+            .inertia_mut("2,2")
             .map(|inertia| inertia.mass);
         assert_eq!(mass, Some(1e-7));
     }

@@ -24,7 +24,7 @@ pub fn all(study: &Study) -> Vec<(&'static str, Table)> {
         ("bounds", bounds()),
         ("eigenvalues", eigenvalues(study)),
         ("long-run", long_run(study)),
-        ("repeat", repeat(study)),
+        ("repeat", repeat(study, true)),
     ]
 }
 
@@ -194,7 +194,8 @@ fn long_run(study: &Study) -> Table {
     table
 }
 
-fn repeat(study: &Study) -> Table {
+/// Repeats; with reasons for failures, or without.
+fn repeat(study: &Study, reasons: bool) -> Table {
     let columns = [
         ("method", ""),
         ("what", ""),
@@ -202,7 +203,7 @@ fn repeat(study: &Study) -> Table {
         ("difference", "rad, m, rad/s, m/s"),
         ("why", ""),
     ];
-    let mut table = Table::new("repeat", &columns);
+    let mut table = Table::new("repeat", &columns[..if reasons { 5 } else { 4 }]);
     for row in &study.repeat {
         let (difference, why) = match &row.outcome {
             repeat::Outcome::Differs(most) => (short(*most), Cell::Empty),
@@ -251,7 +252,16 @@ pub fn text(study: &Study) -> String {
         "\nwithout drive and losses, largest drift; growth is the exponent of time in the last decade\n{}",
         long_run(study).to_text()
     );
-    text += &format!("\nthe same run again\n{}", repeat(study).to_text());
+    text += &format!("\nthe same run again\n{}", repeat(study, false).to_text());
+    let mut told = "";
+    for row in &study.repeat {
+        if let repeat::Outcome::Failed(why) = &row.outcome
+            && told != row.method
+        {
+            text += &format!("failed: {}: {why}\n", row.method);
+            told = row.method;
+        }
+    }
     text
 }
 
