@@ -16,10 +16,12 @@ use linkdyn_mechanisms::{RunError, Seen, Simulation, run_watched};
 use crate::report::measure::{Halt, Limit};
 use crate::run::Prepared;
 use crate::run::methods::{PUBLISHED_STEP, Plan, STEP};
+use crate::scenes::Variant;
 
 use super::plans::{is_fixed, methods, plan, tolerance};
+use super::stiffening::Quantity;
 
-/// Fixed step \[s\], and with clearance: the program's own.
+/// Fixed step \[s\], and with clearance or springs: the program's own.
 const STEPS: [f64; 2] = [STEP, PUBLISHED_STEP];
 /// Fewest threads, however few the machine has.
 const FEWEST: usize = 2;
@@ -189,7 +191,10 @@ pub fn rows(prepared: &Prepared, until: f64, limit: &Limit, heard: &mut dyn FnMu
     let threads = thread::available_parallelism()
         .map_or(FEWEST, usize::from)
         .clamp(FEWEST, MOST);
-    let step = STEPS[usize::from(prepared.mechanism.clearances().next().is_some())];
+    let stiff = Quantity::STIFF
+        .iter()
+        .any(|q| q.is_in(&Variant::default(), &prepared.scene.linkage));
+    let step = STEPS[usize::from(stiff)];
     let count = methods().count();
     let mut rows = Vec::new();
     for (i, method) in methods().enumerate() {

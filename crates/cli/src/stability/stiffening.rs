@@ -43,6 +43,9 @@ impl Quantity {
         Self::MassRatio,
     ];
 
+    /// Those whose presence makes a scene stiff at its own numbers.
+    pub const STIFF: [Self; 2] = [Self::ContactStiffness, Self::Modulus];
+
     /// The name in tables and files.
     pub fn name(self) -> &'static str {
         match self {
