@@ -8,6 +8,7 @@ use crate::run::pictures::save;
 use super::Study;
 use super::bounds::Polynomial;
 use super::plans::methods;
+use super::spectrum::REFERENCE;
 use super::stiffening::Quantity;
 
 /// Width of a picture and height of its panel, in pixels.
@@ -102,18 +103,15 @@ fn stable_steps(study: &Study) -> Vec<Curve> {
         .iter()
         .map(|spectrum| (spectrum.t, spectrum.step))
         .filter(|point| point.1 > 0.0);
-    let mut curves = vec![("accuracy (radau5)".to_owned(), accuracy.collect())];
+    let mut curves = vec![(format!("accuracy ({REFERENCE})"), accuracy.collect())];
     for method in methods() {
         let Some(polynomial) = Polynomial::of(method) else {
             continue;
         };
-        let points = study.spectra.iter().map(|spectrum| {
-            let steps = spectrum
-                .eigenvalues
-                .iter()
-                .map(|&lambda| polynomial.largest_step(lambda));
-            (spectrum.t, steps.fold(f64::INFINITY, f64::min))
-        });
+        let points = study
+            .spectra
+            .iter()
+            .map(|spectrum| (spectrum.t, spectrum.largest_step(&polynomial)));
         curves.push((method.to_owned(), points.filter(|point| point.1.is_finite()).collect()));
     }
     curves

@@ -13,6 +13,7 @@ use nalgebra::{Complex, DMatrix};
 use crate::report::measure::Limit;
 use crate::run::Prepared;
 
+use super::bounds::Polynomial;
 use super::plans::{plan, tolerance};
 
 /// The method of the reference run: its steps are not limited by stability, so that they are those that accuracy allows.
@@ -50,6 +51,12 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// Largest step with which an explicit method is stable there \[s\].
+    pub fn largest_step(&self, polynomial: &Polynomial) -> f64 {
+        let steps = self.eigenvalues.iter().map(|&lambda| polynomial.largest_step(lambda));
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
     /// Largest modulus, most negative real part, largest imaginary part, largest positive real part \[1/s\].
     pub fn extremes(&self) -> [f64; 4] {
         self.eigenvalues.iter().fold([0.0; 4], |[size, fall, turn, rise], z| {
@@ -160,4 +167,31 @@ fn eigenvalues(simulation: &mut Simulation, sample: &Sample) -> Result<Vec<Compl
     balance_parlett_reinsch(&mut matrix);
     let schur = Schur::try_new(matrix, f64::EPSILON, ITERATIONS).ok_or("they do not converge")?;
     Ok(schur.complex_eigenvalues().iter().copied().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::FormulationArg;
+    use crate::interrupt::Interrupt;
+    use crate::run::prepare;
+    use crate::scenes::Variant;
+
+    #[test]
+    fn loops_leave_a_pair_for_each_freedom_and_zeros() {
+        // RSRRR has four speeds and one freedom: of eight eigenvalues six are zero, whatever the loops do.
+        let prepared = prepare("rsrrr", &Variant::default(), None, FormulationArg::Recursive).expect("a scene");
+        let limit = Limit::new(60.0, Interrupt::new());
+        let (spectra, remark) = along(&prepared, 0.1, &limit, &mut || ());
+        assert!(remark.is_none() && spectra.len() > 10, "{remark:?} {}", spectra.len());
+        for spectrum in spectra {
+            let mut sizes: Vec<f64> = spectrum.eigenvalues.iter().map(|z| z.norm()).collect();
+            sizes.sort_by(f64::total_cmp);
+            assert!(
+                sizes.len() == 8 && sizes[5] < 1e-4 && sizes[6] > 1e-2,
+                "{} s: {sizes:?}",
+                spectrum.t
+            );
+        }
+    }
 }

@@ -23,6 +23,7 @@ pub fn all(study: &Study) -> Vec<(&'static str, Table)> {
         ("sweeps", sweeps(study)),
         ("bounds", bounds()),
         ("eigenvalues", eigenvalues(study)),
+        ("limits", limits(study)),
         ("long-run", long_run(study)),
         ("repeat", repeat(study, true)),
     ]
@@ -156,6 +157,38 @@ fn eigenvalues(study: &Study) -> Table {
     table
 }
 
+/// How often stability and not accuracy limits the explicit one-step methods: at how many of the states their largest stable step is
+/// shorter than the step that accuracy allows, and by how much at most.
+fn limits(study: &Study) -> Table {
+    let columns = [
+        ("method", ""),
+        ("limited", ""),
+        ("of", ""),
+        ("most times", ""),
+        ("at", "s"),
+    ];
+    let mut table = Table::new("limits", &columns);
+    for method in methods() {
+        let Some(polynomial) = Polynomial::of(method) else {
+            continue;
+        };
+        let ratios = study
+            .spectra
+            .iter()
+            .map(|s| (s.step / s.largest_step(&polynomial), s.t));
+        let limited: Vec<(f64, f64)> = ratios.filter(|(ratio, _)| *ratio > 1.0).collect();
+        let most = limited.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        table.row([
+            Cell::text(method),
+            Cell::count(limited.len() as u64),
+            Cell::count(study.spectra.len() as u64),
+            most.map_or(Cell::Empty, |(ratio, _)| Cell::text(format!("{ratio:.1}"))),
+            most.map_or(Cell::Empty, |(_, t)| Cell::number(*t)),
+        ]);
+    }
+    table
+}
+
 fn long_run(study: &Study) -> Table {
     let names: Vec<String> = long_run::TIMES
         .iter()
@@ -244,6 +277,10 @@ pub fn text(study: &Study) -> String {
     text += &format!(
         "\neigenvalues of the motion, and steps: of {REFERENCE} by accuracy, of explicit methods by stability\n{}",
         eigenvalues(study).to_text()
+    );
+    text += &format!(
+        "\nstates at which stability limits a method and not accuracy, and how many times shorter its steps are there\n{}",
+        limits(study).to_text()
     );
     if let Some(remark) = &study.remark {
         text += &format!("{remark}\n");
