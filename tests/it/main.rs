@@ -13,6 +13,7 @@ mod cut_or_carried;
 mod denavit_hartenberg;
 mod derivatives;
 mod energy;
+mod extreme_runs;
 mod extremes;
 mod flexible_link;
 mod implicit;
