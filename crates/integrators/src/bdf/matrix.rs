@@ -7,13 +7,17 @@ use crate::reduced::{Layout, Reduced};
 use crate::{Counted, EvalError, Ode, Weights};
 
 /// Factors serve for values of c = h/γ that differ from theirs by this part.
-const SAME_MATRIX: f64 = 0.2;
+const SAME_MATRIX: f64 = 0.05;
 
 /// Where changes shrink to this part or less, df/dy is as good as a new one.
 const FAST: f64 = 0.02;
 
 /// Where they shrink more slowly than this, divergence is near.
 const SLOW: f64 = 0.3;
+
+/// df/dy serves for so many steps at most, or for twice as many as it has cost evaluations. An iteration that still converges may
+/// follow a matrix that has lost its meaning: without this bound van der Pol's equation misses its jumps.
+const MOST_STEPS: usize = 20;
 
 /// Iterations that a step with a new df/dy is taken to need at first.
 const USUAL: u32 = 2;
@@ -28,8 +32,9 @@ pub(super) struct Matrix {
     c: Option<f64>,
     /// J serves.
     pub usable: bool,
-    /// Evaluations that J has cost, iterations of the step it was found for, and the iterations above these of all steps since.
+    /// Evaluations that J has cost, steps that it has served, iterations of the step it was found for, and the iterations above these of all steps since.
     evaluations: usize,
+    steps: usize,
     usual: u32,
     excess: u32,
 }
@@ -43,6 +48,7 @@ impl Matrix {
             c: None,
             usable: false,
             evaluations: 0,
+            steps: 0,
             usual: USUAL,
             excess: 0,
         }
@@ -97,6 +103,16 @@ impl Matrix {
         }
     }
 
+    /// Multiplies by (1 − c J)⁻¹ with the c of the factors, quadratures included.
+    pub(super) fn filter(&mut self, r: &mut [f64]) {
+        let own = self.c.unwrap_or(0.0);
+        self.solve(own, r);
+        let (controlled, quadratures) = r.split_at_mut(self.layout.active);
+        for (i, x) in quadratures.iter_mut().enumerate() {
+            *x += own * self.row_times(self.layout.active + i, controlled);
+        }
+    }
+
     /// Row `i` of df/dy times a change of all that f depends on.
     pub(super) fn row_times(&self, i: usize, x: &[f64]) -> f64 {
         let row = &self.jacobian[i * self.layout.dim..][..self.layout.active];
@@ -106,9 +122,10 @@ impl Matrix {
     /// Whether J has served long enough, after the iteration of a step; `new` if it was found in that step.
     pub(super) fn is_outdated(&mut self, convergence: &Convergence, new: bool) -> bool {
         let iterations = convergence.iterations();
+        self.steps = if new { 0 } else { self.steps + 1 };
         self.usual = iterations.min(self.usual + u32::from(new));
         self.excess = if new { 0 } else { self.excess + (iterations - self.usual) };
         let paid = self.excess as usize > self.evaluations;
-        convergence.contraction() > if paid { FAST } else { SLOW }
+        self.steps >= MOST_STEPS.max(2 * self.evaluations) || convergence.contraction() > if paid { FAST } else { SLOW }
     }
 }
