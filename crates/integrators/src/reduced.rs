@@ -62,7 +62,12 @@ where
         }
     }
 
-    pub(crate) fn factorise(&mut self, Layout { dim, pairs, active }: Layout, jacobian: &[f64], h: f64) -> Result<(), Singular> {
+    pub(crate) fn factorise(
+        &mut self,
+        Layout { dim, pairs, active }: Layout,
+        jacobian: &[f64],
+        h: f64,
+    ) -> Result<(), Singular> {
         let size = active - pairs;
         let positions = self.inverse_lambda * (h * h);
         let rows = jacobian[pairs * dim..].chunks_exact(dim.max(1));

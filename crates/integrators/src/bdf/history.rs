@@ -181,8 +181,11 @@ mod tests {
                 let [lower, lowest, higher] = &mut found;
                 history.differences(5, &[0.0], [lower, lowest, higher]);
                 let scaled = history.coefficients.scale[5] * lower[0];
-                assert!((scaled / h.powi(5) - 13.2).abs() < 1e-6 / h.abs().powi(5).min(1.0), "{scaled}");
-                assert!(higher[0].abs() < 1e-11);
+                assert!(
+                    (scaled / h.powi(5) - 13.2).abs() < 1e-6 / h.abs().powi(5).min(1.0),
+                    "{scaled}"
+                );
+                assert!(higher[0].abs() < 1e-11, "{h}: {}", higher[0]);
             }
             for s in [0.0, -0.1, -0.3, -0.5].map(|s| mirror * s) {
                 history.interpolate(5, s, &[quintic(mirror * 1.3).0], &mut y);

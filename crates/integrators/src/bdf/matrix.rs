@@ -124,7 +124,11 @@ impl Matrix {
         let iterations = convergence.iterations();
         self.steps = if new { 0 } else { self.steps + 1 };
         self.usual = iterations.min(self.usual + u32::from(new));
-        self.excess = if new { 0 } else { self.excess + (iterations - self.usual) };
+        self.excess = if new {
+            0
+        } else {
+            self.excess + (iterations - self.usual)
+        };
         let paid = self.excess as usize > self.evaluations;
         self.steps >= MOST_STEPS.max(2 * self.evaluations) || convergence.contraction() > if paid { FAST } else { SLOW }
     }

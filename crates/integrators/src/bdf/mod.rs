@@ -9,7 +9,7 @@ use crate::reduced::Layout;
 use crate::{Counted, EvalError, Method, Ode, SettingsError, Step, Weights};
 use history::{History, MOST};
 use matrix::Matrix;
-use order::{COUNTED, Derivatives, Orders, gamma};
+use order::{BETWEEN, COUNTED, Derivatives, Orders, decisive, gamma};
 
 /// Backward differentiation formulas of order 1 to 5 with variable step, for stiff problems whose evaluations are dear.
 ///
@@ -193,24 +193,25 @@ impl Bdf {
         }
     }
 
-    /// Norms of the derivatives that the attempt shows. What it misses is left in `change`, filtered like they are: (1 − c J)⁻¹ takes
-    /// out what stiff components show after a change of the step though it is no error of theirs (Hairer, Wanner II, IV.8).
+    /// Norms of the derivatives that the attempt shows. What it misses is left in `change`, filtered: (1 − c J)⁻¹ takes out what
+    /// stiff components show, after a change of the step say, though it is no error of theirs (Hairer, Wanner II, IV.8).
     fn measure(&mut self, y: &[f64], y_new: &[f64], weights: &Weights) {
         let k = self.orders.k;
         let [lower, lowest, higher] = &mut self.scratch;
         self.history.differences(k, &self.miss, [lower, lowest, higher]);
         self.change.copy_from_slice(&self.miss);
-        for x in [&mut self.change, &mut *lower, &mut *lowest, &mut *higher] {
-            self.matrix.filter(x);
+        let plain = weights.mean_squares(y, y_new, [&self.change, lower, lowest, higher]);
+        for difference in [&mut self.change, &mut *lower, &mut *lowest, &mut *higher] {
+            self.matrix.filter(difference);
         }
-        let squares = weights.mean_squares(y, y_new, [&self.change, lower, lowest, higher]);
-        let [own, lower, lowest, higher] = squares.map(f64::sqrt);
+        let filtered = weights.mean_squares(y, y_new, [&self.change, lower, lowest, higher]);
         let scale = &self.history.coefficients.scale;
+        let norm = |place: usize, k: usize| scale[k + 1] * decisive(k, filtered[place].sqrt(), plain[place].sqrt());
         self.derivatives = Derivatives {
-            own: scale[k + 1] * own,
-            lower: scale[k] * lower,
-            lowest: scale[k - 1] * lowest,
-            higher: scale[k + 2] * higher,
+            own: norm(0, k),
+            lower: norm(1, k - 1),
+            lowest: norm(2, k.saturating_sub(2)),
+            higher: norm(3, k + 1),
         };
     }
 }
@@ -292,9 +293,18 @@ impl<P: Ode + ?Sized> Method<P> for Bdf {
         // What the formula leaves over on the steps as they were, but not less than on equal ones.
         let slope = &self.history.coefficients.slope;
         let part = COUNTED * (slope[k + 1] - gamma).abs().max(slope[k + 1] - slope[k]);
-        let filtered = error.iter_mut().zip(&self.change);
-        filtered.for_each(|(error, miss)| *error = part * miss);
-        Ok(weights.norm(step.y, y_new, error))
+        for (error, miss) in error.iter_mut().zip(&self.change) {
+            *error = part * miss;
+        }
+        let of_formula = weights.norm(step.y, y_new, error);
+        let between = BETWEEN[k] * weights.norm(step.y, y_new, &self.miss);
+        if between > of_formula {
+            for (error, miss) in error.iter_mut().zip(&self.miss) {
+                *error = BETWEEN[k] * miss;
+            }
+            return Ok(between);
+        }
+        Ok(of_formula)
     }
 
     fn close(
@@ -356,7 +366,8 @@ impl<P: Ode + ?Sized> Method<P> for Bdf {
         theta: f64,
         y: &mut [f64],
     ) -> Result<(), EvalError> {
-        self.history.interpolate(self.orders.k, (theta - 1.0) * step.h, y_new, y);
+        self.history
+            .interpolate(self.orders.k, (theta - 1.0) * step.h, y_new, y);
         Ok(())
     }
 

@@ -34,6 +34,18 @@ fn error_constant(k: usize) -> f64 {
     COUNTED / (k + 1) as f64
 }
 
+/// Largest error of the polynomial of order k within a step, likewise: max |s (s + 1) ... (s + k)| / (k + 1)!, −1 ≤ s ≤ 0.
+pub(super) const BETWEEN: [f64; 6] = [1.0, 0.125, 0.06415, 0.04167, 0.03026, 0.02347];
+
+/// The norm of h^(k+1) times the derivative of that order that decides on a step of order k, from its norm after the filter and before.
+///
+/// What the filter takes out is no error of the state reached, but one of interpolation, which does not add up over the steps.
+pub(super) fn decisive(k: usize, filtered: f64, plain: f64) -> f64 {
+    let between = BETWEEN[k.min(5)] / error_constant(k) * plain;
+    // Unlike `f64::max` this keeps what is not a number.
+    if between > filtered { between } else { filtered }
+}
+
 /// By what factor the next step may differ at order k, where h^(k+1) times the derivative of that order is known, in tolerances.
 fn growth(k: usize, derivative: f64) -> f64 {
     (AIM / (error_constant(k) * derivative).max(1e-10)).powf(1.0 / (k + 1) as f64)
@@ -226,7 +238,7 @@ mod tests {
     #[test]
     fn vibrations_lower_the_order() {
         for (ratio, expected) in [(2.0, 2), (0.6, 2), (0.4, 3), (0.25, 4)] {
-            assert_eq!(after(4, 3, &falling(1e-3, ratio)).0, expected, "{ratio}");
+            assert_eq!(after(4, 3, &falling(0.1, ratio)).0, expected, "{ratio}");
         }
         assert_eq!(after(1, 2, &falling(1e-3, 3.0)).0, 1);
     }
