@@ -185,7 +185,8 @@ mod tests {
                     (scaled / h.powi(5) - 13.2).abs() < 1e-6 / h.abs().powi(5).min(1.0),
                     "{scaled}"
                 );
-                assert!(higher[0].abs() < 1e-11, "{h}: {}", higher[0]);
+                // Rounding of the past grows by β₆, more than a hundred for the longest step.
+                assert!(higher[0].abs() < 1e-10, "{h}: {}", higher[0]);
             }
             for s in [0.0, -0.1, -0.3, -0.5].map(|s| mirror * s) {
                 history.interpolate(5, s, &[quintic(mirror * 1.3).0], &mut y);

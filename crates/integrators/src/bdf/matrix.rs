@@ -92,7 +92,7 @@ impl Matrix {
     }
 
     /// Solves (1 − c J) x = r in place, with the factors at hand; where they belong to another c the result is scaled so that it is
-    /// right in the middle between soft and stiff components (Brown, Byrne, Hindmarsh 1989, 2.1).
+    /// right in the middle between soft and stiff components (Brown, Byrne, Hindmarsh 1989).
     pub(super) fn solve(&mut self, c: f64, r: &mut [f64]) {
         let own = self.c.unwrap_or(c);
         let (get, set) = (|r: &[f64], i: usize| r[i], |r: &mut [f64], i: usize, x: f64| r[i] = x);
