@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod adams;
+mod bdf;
 mod control;
 mod error;
 mod event;
@@ -11,8 +12,10 @@ mod lanes;
 mod linear;
 mod method;
 mod newmark;
+mod newton;
 mod problem;
 mod radau;
+mod reduced;
 mod root;
 mod runge_kutta;
 mod settings;
@@ -21,6 +24,7 @@ mod sums;
 mod weights;
 
 pub use adams::Adams;
+pub use bdf::Bdf;
 pub use error::IntegrationError;
 pub use integration::{Integration, Progress};
 pub use method::{Counted, Method, Step};

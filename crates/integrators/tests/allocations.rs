@@ -1,8 +1,8 @@
 //! After the first step nothing is allocated. (A target of its own: it replaces the global allocator.)
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Radau5, Rk4, SecondOrder,
-    Settings,
+    Adams, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Radau5, Rk4,
+    SecondOrder, Settings,
 };
 
 struct Pendulum;
@@ -82,6 +82,7 @@ fn no_step_allocates() {
     assert_eq!(allocations(Pendulum, Dop853::default()), 0);
     assert_eq!(allocations(Pendulum, Adams::default()), 0);
     assert_eq!(allocations(Pendulum, Radau5::default()), 0);
+    assert_eq!(allocations(Pendulum, Bdf::default()), 0);
     assert_eq!(allocations(Pendulum, Radau5::fixed(0.01)), 0);
 }
 
@@ -94,5 +95,6 @@ fn no_event_allocates() {
     assert_eq!(allocations(Struck, Dop853::default()), 0);
     assert_eq!(allocations(Struck, Adams::default()), 0);
     assert_eq!(allocations(Struck, Radau5::default()), 0);
+    assert_eq!(allocations(Struck, Bdf::default()), 0);
     assert_eq!(allocations(Struck, Radau5::fixed(0.01)), 0);
 }

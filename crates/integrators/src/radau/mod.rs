@@ -7,11 +7,13 @@ mod stages;
 mod systems;
 
 use crate::jacobian::differences;
+use crate::newton::{Convergence, Verdict};
+use crate::reduced::Layout;
 use crate::{Counted, EvalError, Method, NotSettled, Ode, SettingsError, Step, Weights};
-use control::{Convergence, Prediction, Verdict, effort};
+use control::{Prediction, effort};
 use polynomial::Polynomial;
 use stages::Stages;
-use systems::{Layout, Systems};
+use systems::Systems;
 
 /// The Radau IIA method of three stages and order 5, for stiff problems (Hairer, Wanner II, IV.8).
 ///
@@ -250,28 +252,18 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
     }
 
     fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
-        let (dim, pairs, quadratures) = (problem.dim(), problem.second_order_pairs(), problem.quadratures());
-        if pairs > dim || quadratures > dim || 2 * pairs > dim - quadratures {
-            return Err(SettingsError::Method(
-                "more pairs of positions and rates, and quadratures, than components",
-            ));
-        }
+        let layout = Layout::of(problem)?;
         if self.reuse.is_some_and(|part| !(0.0..1.0).contains(&part)) {
             return Err(SettingsError::Method("needed: 0 <= part of reuse < 1"));
         }
-        let layout = Layout {
-            dim,
-            pairs,
-            active: dim - quadratures,
-        };
         self.layout = layout;
         self.stages = Stages::new(layout);
         let coefficients = &self.stages.coefficients;
         self.systems = Systems::new(layout, coefficients.real, coefficients.complex);
-        self.polynomial = Polynomial::new(coefficients.c, dim);
-        self.jacobian = vec![0.0; dim * dim];
+        self.polynomial = Polynomial::new(coefficients.c, layout.dim);
+        self.jacobian = vec![0.0; layout.dim * layout.dim];
         for vector in [&mut self.f_old, &mut self.f_new, &mut self.y, &mut self.jump] {
-            *vector = vec![0.0; dim];
+            *vector = vec![0.0; layout.dim];
         }
         Ok(())
     }

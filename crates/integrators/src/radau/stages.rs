@@ -2,7 +2,8 @@
 
 use super::coefficients::Coefficients;
 use super::polynomial::Polynomial;
-use super::systems::{Layout, Systems};
+use super::systems::Systems;
+use crate::reduced::Layout;
 use crate::{Counted, EvalError, Ode, Step, Weights};
 
 /// Changes from the start of a step to its stages, and what the iteration needs (Hairer, Wanner II, IV.8).

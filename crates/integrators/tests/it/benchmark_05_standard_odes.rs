@@ -1,6 +1,6 @@
 //! Stiff problems of the test set for IVP solvers (benchmark 05-standard-odes): digits and work.
 
-use linkdyn_integrators::{EvalError, Radau5, Settings, Statistics};
+use linkdyn_integrators::{Bdf, EvalError, Method, Radau5, Settings, Statistics};
 
 use crate::problems::{Function, solve};
 
@@ -63,16 +63,16 @@ const ROBERTSON: Standard = Standard {
 };
 
 /// Digits of the worst component at the end, relative to its value.
-fn digits(problem: &Standard, relative: f64, absolute: f64) -> (f64, Statistics) {
+fn digits(problem: &Standard, method: impl Method<Function<Rhs>>, relative: f64, absolute: f64) -> (f64, Statistics) {
     let settings = Settings {
         first_step: Some(1e-6),
         ..Settings::tolerances(relative, absolute)
     };
-    let (dim, Standard { rhs, start, end, exact }) = (problem.start.len(), problem);
-    let (y, statistics) = solve(Function(dim, rhs), Radau5::default(), start, *end, settings);
+    let &Standard { rhs, start, end, exact } = problem;
+    let (y, statistics) = solve(Function(start.len(), rhs), method, start, end, settings);
     let digits = |(y, exact): (&f64, &f64)| -((y - exact) / exact).abs().log10();
     (
-        y.iter().zip(*exact).map(digits).fold(f64::INFINITY, f64::min),
+        y.iter().zip(exact).map(digits).fold(f64::INFINITY, f64::min),
         statistics,
     )
 }
@@ -80,7 +80,7 @@ fn digits(problem: &Standard, relative: f64, absolute: f64) -> (f64, Statistics)
 /// At each relative tolerance: at least so many digits, at most so many evaluations. Absolute tolerances are smaller by `ratio`.
 fn check(problem: &Standard, ratio: f64, expected: [(f64, f64, u64); 4]) {
     for (relative, least, most) in expected {
-        let (digits, statistics) = digits(problem, relative, ratio * relative);
+        let (digits, statistics) = digits(problem, Radau5::default(), relative, ratio * relative);
         assert!(digits >= least, "{relative:e}: {digits} digits");
         assert!(statistics.evaluations <= most, "{relative:e}: {statistics:?}");
     }
@@ -164,4 +164,53 @@ fn work_of_the_original() {
         near(found.jacobians, 162) && found.factorisations < 2 * 253,
         "{found:?}"
     );
+}
+
+/// The same by backward differentiation: digits grow with each power of ten.
+fn check_bdf(problem: &Standard, ratio: f64, least: [f64; 7], most: [u64; 7]) {
+    for (i, (least, most)) in least.into_iter().zip(most).enumerate() {
+        let relative = f64::powi(10.0, -4 - i as i32);
+        let (digits, statistics) = digits(problem, Bdf::default(), relative, ratio * relative);
+        assert!(digits >= least, "{relative:e}: {digits} digits");
+        assert!(statistics.evaluations <= most, "{relative:e}: {statistics:?}");
+    }
+}
+
+#[test]
+fn hires_by_bdf() {
+    let digits = [2.0, 2.9, 3.7, 4.9, 5.7, 6.6, 7.4];
+    check_bdf(&HIRES, 1e-2, digits, [420, 520, 680, 860, 1140, 1590, 2270]);
+}
+
+#[test]
+fn van_der_pol_by_bdf() {
+    let digits = [2.6, 3.2, 4.1, 5.3, 6.1, 6.9, 7.7];
+    check_bdf(&VAN_DER_POL, 1.0, digits, [1010, 1340, 1720, 2300, 3320, 4810, 7030]);
+}
+
+#[test]
+fn robertson_by_bdf() {
+    let digits = [3.0, 3.7, 4.4, 5.1, 5.9, 6.7, 7.6];
+    check_bdf(&ROBERTSON, 1e-6, digits, [790, 1060, 1410, 1920, 2720, 3910, 5690]);
+}
+
+/// What the work of these runs is made of, exactly: a change that costs or saves work shows.
+#[test]
+fn counters_of_bdf() {
+    let counters = |problem: &Standard, ratio: f64| {
+        let s = digits(problem, Bdf::default(), 1e-6, ratio * 1e-6).1;
+        let steps = [s.accepted, s.rejected, s.divergences];
+        (steps, [s.evaluations, s.jacobians, s.factorisations, s.iterations])
+    };
+    let found = [
+        counters(&HIRES, 1e-2),
+        counters(&VAN_DER_POL, 1.0),
+        counters(&ROBERTSON, 1e-6),
+    ];
+    let expected = [
+        ([347, 0, 0], [635, 21, 106, 466]),
+        ([1177, 4, 0], [1547, 71, 464, 1409]),
+        ([959, 3, 0], [1286, 52, 273, 1129]),
+    ];
+    assert_eq!(found, expected);
 }

@@ -1,8 +1,8 @@
 //! Order of each method, of its solution and of its interpolation.
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, Integration, Method, Newmark, Ode, Progress, Radau5, Rk4, SecondOrder,
-    Settings,
+    Adams, Bdf, Corrector, Dop853, DormandPrince5, Integration, Method, Newmark, Ode, Progress, Radau5, Rk4,
+    SecondOrder, Settings,
 };
 
 use crate::problems::{Damped, Kink, Rational, distance, solve};
@@ -180,4 +180,6 @@ fn interpolation() {
     // Variable order: as good as the solution.
     let adams = dense_error(Kink, Adams::default(), &Kink::START, Kink::exact);
     assert!(adams < 1e-8, "{adams:e}");
+    let bdf = dense_error(Kink, Bdf::default(), &Kink::START, Kink::exact);
+    assert!(bdf < 2e-8, "{bdf:e}");
 }

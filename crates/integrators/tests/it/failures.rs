@@ -3,8 +3,8 @@
 use std::error::Error;
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark, NotSettled,
-    Ode, Progress, Radau5, Rk4, Settings,
+    Adams, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark,
+    NotSettled, Ode, Progress, Radau5, Rk4, Settings,
 };
 
 use crate::problems::{Damped, Function, Kink};
@@ -36,7 +36,7 @@ fn failure<P: Ode, M: Method<P>>(
 }
 
 /// The same with each adaptive method.
-fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 4] {
+fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 5] {
     let dim = y0.len();
     [
         failure(
@@ -50,6 +50,7 @@ fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 4] {
         failure(Function(dim, rhs), Dop853::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Adams::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Radau5::default(), 0.0, y0, end, Settings::default()),
+        failure(Function(dim, rhs), Bdf::default(), 0.0, y0, end, Settings::default()),
     ]
 }
 
@@ -250,6 +251,7 @@ fn a_failing_projection() {
         failure(Stubborn, Dop853::default(), 0.0, &[0.0], 2.0, Settings::default()),
         failure(Stubborn, Adams::default(), 0.0, &[0.0], 2.0, Settings::default()),
         failure(Stubborn, Radau5::default(), 0.0, &[0.0], 2.0, Settings::default()),
+        failure(Stubborn, Bdf::default(), 0.0, &[0.0], 2.0, Settings::default()),
     ] {
         assert!(
             matches!(error, IntegrationError::StepTooSmall { source: Some(_), .. }),

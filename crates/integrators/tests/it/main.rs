@@ -1,6 +1,7 @@
 //! Public behaviour of the crate.
 
 mod any_numbers;
+mod bdf;
 mod benchmark_05_standard_odes;
 mod convergence;
 mod counters;

@@ -1,8 +1,8 @@
 //! Output must not change the run.
 
 use linkdyn_integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress, Radau5,
-    Rk4, Settings,
+    Adams, Bdf, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress,
+    Radau5, Rk4, Settings,
 };
 
 use crate::problems::{Counting, Damped, Kink, Pleiades, distance, finish};
@@ -44,10 +44,12 @@ fn the_path_is_the_same_to_the_last_bit() {
     check(|| Kink, Dop853::default, &Kink::START);
     check(|| Kink, Adams::default, &Kink::START);
     check(|| Kink, Radau5::default, &Kink::START);
+    check(|| Kink, Bdf::default, &Kink::START);
     // With refused steps.
     check(|| Pleiades, Dop853::default, &Pleiades::START);
     check(|| Pleiades, Adams::default, &Pleiades::START);
     check(|| Pleiades, Radau5::default, &Pleiades::START);
+    check(|| Pleiades, Bdf::default, &Pleiades::START);
 }
 
 #[test]
@@ -77,6 +79,7 @@ fn interpolation_is_continuous_from_step_to_step() {
     check(Dop853::default());
     check(Adams::default());
     check(Radau5::default());
+    check(Bdf::default());
 }
 
 #[test]

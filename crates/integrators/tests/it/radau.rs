@@ -63,7 +63,7 @@ fn dahlquist() {
 }
 
 /// y' = λ (y − cos t) − sin t with λ = −1e6, solved by cos t (Hairer, Wanner II, IV.15).
-fn prothero_robinson(t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+pub fn prothero_robinson(t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
     dy[0] = -1e6 * (y[0] - t.cos()) - t.sin();
     Ok(())
 }
@@ -113,10 +113,10 @@ fn steps_follow_the_slow_solution() {
 }
 
 /// A problem that tells of its structure, or keeps it to itself.
-struct Told<P> {
-    problem: P,
-    pairs: usize,
-    quadratures: usize,
+pub struct Told<P> {
+    pub problem: P,
+    pub pairs: usize,
+    pub quadratures: usize,
 }
 
 impl<P: Ode> Ode for Told<P> {
@@ -139,10 +139,10 @@ impl<P: Ode> Ode for Told<P> {
 
 /// Three masses on stiffening springs between walls, damped; with a variable of first order, the work of the dampers and the area
 /// under the first mass.
-struct Chain;
+pub struct Chain;
 
 impl Chain {
-    const START: [f64; 9] = [0.3, -0.2, 0.5, 1.0, 0.0, -2.0, 0.1, 0.0, 0.0];
+    pub const START: [f64; 9] = [0.3, -0.2, 0.5, 1.0, 0.0, -2.0, 0.1, 0.0, 0.0];
 }
 
 impl Ode for Chain {
@@ -174,7 +174,7 @@ fn chain(pairs: usize, quadratures: usize, settings: &Settings, method: Radau5) 
 }
 
 /// Largest difference, relative to components larger than 1.
-fn relative_distance(y: &[f64], exact: &[f64]) -> f64 {
+pub fn relative_distance(y: &[f64], exact: &[f64]) -> f64 {
     let difference = |(y, exact): (&f64, &f64)| (y - exact).abs() / exact.abs().max(1.0);
     y.iter().zip(exact).map(difference).fold(0.0, f64::max)
 }
@@ -232,7 +232,7 @@ fn quadratures_without_tolerance() {
 }
 
 /// The same with df/dy given: right, or wrong by this factor.
-struct Given(f64);
+pub struct Given(pub f64);
 
 impl Ode for Given {
     fn dim(&self) -> usize {

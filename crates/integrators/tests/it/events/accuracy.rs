@@ -110,6 +110,7 @@ fn tolerances() {
     check(exact, reflected(), Dop853::default());
     check(exact, reflected(), Adams::default());
     check(exact, reflected(), Radau5::default());
+    check(exact, reflected(), Bdf::default());
 }
 
 /// A pendulum let go at 2 rad: quarter of the period is π / 2 / agm(1, cos 1).
@@ -146,6 +147,7 @@ fn a_pendulum_through_its_lowest_point() {
     check(pendulum(), DormandPrince5::default(), quarter, 1e-11);
     check(pendulum(), Adams::default(), quarter, 1e-11);
     check(pendulum(), Radau5::default(), quarter, 1e-11);
+    check(pendulum(), Bdf::default(), quarter, 2e-10);
     check(pendulum(), Rk4::new(0.001), quarter, 1e-11);
 }
 
@@ -180,6 +182,7 @@ fn a_zigzag_is_exact() {
     check(zigzag(), Dop853::default());
     check(zigzag(), Adams::default());
     check(zigzag(), Radau5::default());
+    check(zigzag(), Bdf::default());
 }
 
 proptest! {
@@ -191,7 +194,7 @@ proptest! {
         levels in proptest::collection::vec(-0.95..0.95_f64, 1..4),
         phase in -3.0..3.0_f64,
         backward: bool,
-        which in 0..5_usize,
+        which in 0..6_usize,
     ) {
         let direction = if backward { -1.0 } else { 1.0 };
         let (roots, tau) = (2 * levels.len(), std::f64::consts::TAU);
@@ -227,6 +230,7 @@ proptest! {
             1 => run(problem, Dop853::default(), &y0, end),
             2 => run(problem, Adams::default(), &y0, end),
             3 => run(problem, Radau5::default(), &y0, end),
+            4 => run(problem, Bdf::default(), &y0, end),
             _ => run(problem, Rk4::new(0.01), &y0, end),
         };
         let pairs: Vec<(f64, usize)> = found.iter()

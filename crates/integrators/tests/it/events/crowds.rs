@@ -46,6 +46,7 @@ fn a_blow_goes_through_a_row() {
     check(row(), Dop853::default());
     check(row(), Adams::default());
     check(row(), Radau5::default());
+    check(row(), Bdf::default());
 }
 
 /// A gap with a mode: closed while x ≤ 0. The force of the closed gap depends on `mode`, so a change that is overlooked is seen.
@@ -109,6 +110,7 @@ fn a_gap_that_closes_and_opens() {
             check(gap(1.0), Dop853::default(), start),
             check(gap(1.0), Adams::default(), start),
             check(gap(1.0), Radau5::default(), start),
+            check(gap(1.0), Bdf::default(), start),
         ];
         let same = counts.iter().all(|count| *count == counts[0]);
         assert!(counts[0] > 0 && (same || !certain), "{start:?}: {counts:?}");

@@ -33,13 +33,14 @@ fn a_root_function_that_is_not_a_number() {
             other => panic!("{other:?}"),
         }
     };
-    let methods = || -> [Box<dyn Method<Box<dyn Ode>>>; 5] {
+    let methods = || -> [Box<dyn Method<Box<dyn Ode>>>; 6] {
         [
             Box::new(Rk4::new(0.01)),
             Box::new(DormandPrince5::default()),
             Box::new(Dop853::default()),
             Box::new(Adams::default()),
             Box::new(Radau5::default()),
+            Box::new(Bdf::default()),
         ]
     };
     for method in methods() {

@@ -109,6 +109,7 @@ fn at_the_start_at_a_stop_and_at_the_end() {
     check(clock(4, roots), Dop853::default());
     check(clock(4, roots), Adams::default());
     check(clock(4, roots), Radau5::default());
+    check(clock(4, roots), Bdf::default());
 }
 
 /// In both directions a function that falls fires, one that rises does not.
@@ -125,6 +126,7 @@ fn backward_in_time() {
     check(clock(2, roots), Dop853::default());
     check(clock(2, roots), Adams::default());
     check(clock(2, roots), Radau5::default());
+    check(clock(2, roots), Bdf::default());
 }
 
 /// A jump of a root function is found as well as a root.
@@ -140,6 +142,7 @@ fn a_function_that_jumps() {
     check(clock(1, roots), Dop853::default());
     check(clock(1, roots), Adams::default());
     check(clock(1, roots), Radau5::default());
+    check(clock(1, roots), Bdf::default());
 }
 
 /// One that never is positive never fires, one that is zero throughout neither.

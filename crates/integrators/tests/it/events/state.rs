@@ -74,6 +74,7 @@ fn interpolation_when_the_problem_has_changed() {
     check(leap(), Dop853::default(), 1e-8);
     check(leap(), Adams::default(), 1e-8);
     check(leap(), Radau5::default(), 1e-8);
+    check(leap(), Bdf::default(), 1e-8);
 }
 
 /// Steps and events are the same to the last bit whatever is interpolated.
@@ -107,6 +108,7 @@ fn output_changes_nothing() {
     check(ball(0.5), Dop853::default);
     check(ball(0.5), Adams::default);
     check(ball(0.5), Radau5::default);
+    check(ball(0.5), Bdf::default);
 }
 
 /// Root functions that never fire leave the steps as they are, to the last bit.
@@ -126,6 +128,7 @@ fn steps_without_events_are_the_same() {
     check(Dop853::default);
     check(Adams::default);
     check(Radau5::default);
+    check(Bdf::default);
 }
 
 /// All calls are counted, and every attempt is accounted for.
@@ -162,6 +165,7 @@ fn counters() {
     check(Dop853::default(), 3);
     check(Adams::default(), 0);
     check(Radau5::default(), 0);
+    check(Bdf::default(), 0);
 }
 
 /// The state is on the invariants when it is changed.
@@ -203,4 +207,5 @@ fn the_state_at_an_event_is_projected() {
     check(Dop853::default(), 1e-5);
     check(Adams::default(), 1e-5);
     check(Radau5::default(), 1e-5);
+    check(Bdf::default(), 1e-5);
 }
