@@ -26,8 +26,9 @@ pub struct Plan {
     pub switching: Switching,
 }
 
-/// Methods with error control, and methods of fixed step.
-const ADAPTIVE: [&str; 4] = ["adams", "dop853", "dopri5", "radau5"];
+/// Methods with error control.
+pub(crate) const ADAPTIVE: [&str; 4] = ["adams", "dop853", "dopri5", "radau5"];
+/// Methods of fixed step.
 const FIXED: [&str; 2] = ["rk4", "newmark"];
 
 /// Default tolerance, relative and absolute \[rad, m, rad/s, m/s\].
