@@ -83,7 +83,7 @@ pub struct Reference {
     path: Vec<Point>,
     /// Time up to which both references reach and agree \[s\].
     pub horizon: f64,
-    /// Whether that is as far as the longer of them reached.
+    /// Whether that is as far as both of them reached.
     pub whole: bool,
     /// Largest disagreement up to the horizon, never less than rounding.
     pub accuracy: Errors,
@@ -102,7 +102,7 @@ impl Reference {
         if count < 2 {
             return None;
         }
-        let whole = count == first.len() && count == second.len();
+        let whole = count == disagreement.len();
         let mut path = first;
         path.truncate(count);
         let rounding = path.iter().fold(Errors::default(), |most, point| {
