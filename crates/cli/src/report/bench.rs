@@ -91,10 +91,10 @@ impl Bench {
                     origin.note = Some(format!("{name} in the cache is not used: {why}"));
                 }
                 let computed = self.compute(ready, plans)?;
-                if let (Some(cache), None) = (cache, &computed.1) {
-                    if let Err(error) = cache.write(&computed.0) {
-                        origin.note = Some(format!("the reference cannot be kept in the cache: {error}"));
-                    }
+                if let (Some(cache), None) = (cache, &computed.1)
+                    && let Err(error) = cache.write(&computed.0)
+                {
+                    origin.note = Some(format!("the reference cannot be kept in the cache: {error}"));
                 }
                 computed
             }

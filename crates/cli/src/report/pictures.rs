@@ -73,9 +73,7 @@ fn precision(report: &Report, kind: &Kind, label: &str, cost: fn(&Figures) -> f6
     let curves = curves(&report.rows, *error, cost);
     let all = || curves.iter().flat_map(|(_, _, points)| points).map(|point| point.0);
     let (least, most) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
-    if all().next().is_none() {
-        return None;
-    }
+    all().next()?;
     let mut panel = Panel::new("", Axis::log(label), Axis::log(format!("largest error of {name}")));
     for (name, style, points) in curves {
         panel = panel.series(Series::new(name, style, Mark::LineAndDots, points));
