@@ -110,9 +110,18 @@ pub struct VariantArgs {
 #[derive(Debug, Args)]
 pub struct ReportArgs {
     /// Name of a built-in scene (see `linkdyn scenes`)
-    pub scene: String,
+    #[arg(required_unless_present = "all")]
+    pub scene: Option<String>,
+    /// Report on all built-in scenes and their main variants, each with its share of the budget
+    #[arg(
+        long,
+        conflicts_with_all = [
+            "scene", "friction", "no_friction", "friction_scale", "clearance", "clearance_size", "bristle", "flexible",
+        ]
+    )]
+    pub all: bool,
     /// Folder for the report; an earlier run or report in it is replaced as a whole [default: out/report-, and the name of scene
-    /// and variant]
+    /// and variant or `all`]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// What to switch in the scene.
@@ -121,9 +130,16 @@ pub struct ReportArgs {
     /// Simulated time at which to stop, in seconds [default: the scene's]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub until: Option<f64>,
-    /// Time on the clock that all runs together may take, in seconds; what does not fit is listed as not run
-    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 120.0)]
-    pub budget: f64,
+    /// Time on the clock that all runs together may take, in seconds; what does not fit is listed as not run [default: 120 for each
+    /// scene]
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub budget: Option<f64>,
+    /// Folder in which references are kept for the next report [default: LINKDYN_CACHE, else linkdyn in the user's folder for caches]
+    #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
+    pub cache: Option<PathBuf>,
+    /// Compute the reference anew, and keep none
+    #[arg(long)]
+    pub no_cache: bool,
     /// Print the report as JSON, and no progress
     #[arg(long)]
     pub json: bool,

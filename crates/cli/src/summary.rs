@@ -107,6 +107,19 @@ impl Table {
         self.row([Cell::text(quantity), value, Cell::text(unit)])
     }
 
+    /// Names of the columns with their units.
+    pub fn heads(&self) -> impl Iterator<Item = String> {
+        self.columns.iter().map(|(name, unit)| match unit.as_str() {
+            "" => name.clone(),
+            unit => format!("{name} ({unit})"),
+        })
+    }
+
+    /// The rows as a reader sees them.
+    pub fn shown(&self) -> impl Iterator<Item = Vec<String>> {
+        self.rows.iter().map(|row| row.iter().map(Cell::shown).collect())
+    }
+
     /// The table for a terminal: aligned columns, numbers on the right, no frame and no blanks at the ends of lines.
     #[must_use]
     pub fn to_text(&self) -> String {
@@ -114,13 +127,9 @@ impl Table {
         layout
             .load_style(comfy_table::presets::NOTHING)
             .set_content_arrangement(ContentArrangement::Disabled);
-        let head = self.columns.iter().map(|(name, unit)| match unit.as_str() {
-            "" => name.clone(),
-            unit => format!("{name} ({unit})"),
-        });
-        layout.set_header(head);
-        for row in &self.rows {
-            layout.add_row(row.iter().map(Cell::shown));
+        layout.set_header(self.heads());
+        for row in self.shown() {
+            layout.add_row(row);
         }
         for (index, column) in layout.column_iter_mut().enumerate() {
             let words = self.rows.iter().any(|row| matches!(row[index], Cell::Text(_)));

@@ -23,13 +23,17 @@ const FINE_GRID: &str = "#f1f1f1";
 const ZERO: &str = "#b8b8b8";
 
 /// Colour and dash pattern (in canvas units) of the styles; told apart by colour-blind readers and in grey print.
-const STYLES: [(&str, &str); 6] = [
+const STYLES: [(&str, &str); 10] = [
     ("#1b5ea8", ""),
     ("#d1451b", "65 30"),
     ("#1d845b", "100 25 20 25"),
     ("#7d3c98", "20 20"),
     ("#b07d00", "130 40"),
     ("#4a4a4a", "40 20 15 20 15 20"),
+    ("#c2378d", "200 30"),
+    ("#0f8f9f", "10 25"),
+    ("#6b4a1e", "60 60"),
+    ("#5b7f00", "100 20 20 20 20 20"),
 ];
 
 pub(super) fn svg(figure: &Figure) -> Result<String, FigureError> {

@@ -2,25 +2,41 @@
 
 use linkdyn_mechanisms::Switching;
 
-use crate::run::methods::{PUBLISHED_STEP, Plan, STEP};
+use crate::run::methods::{ADAPTIVE, PUBLISHED_STEP, Plan, STEP};
 use crate::scenes::Variant;
 
 /// Sweeps of the friction loop in the paper on RSRRR.
 const SWEEPS: usize = 3;
+
+/// In which way a row runs its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// As this program does.
+    Own,
+    /// Switched to the way of its paper, at another step.
+    Papers,
+    /// Switched to the way of its paper, at the paper's step.
+    Published,
+}
+
+/// Every half decade.
+const TOLERANCES: [f64; 17] = [
+    1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10, 3e-11, 1e-11, 3e-12, 1e-12,
+];
 
 /// A row of the report before it is measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// Method with tolerance or step.
     pub plan: Plan,
-    /// Whether the scene is also switched to the way of its paper.
-    pub papers: bool,
+    /// The way of the scene.
+    pub way: Way,
 }
 
 impl Candidate {
     /// Share of what is left of the budget that the row may take, so that a method that does not get on leaves time for others.
     pub fn share(&self) -> f64 {
-        if self.papers { 1.0 } else { 0.25 }
+        if self.way == Way::Published { 1.0 } else { 0.25 }
     }
 
     /// Tolerance or step \[s\].
@@ -35,8 +51,8 @@ pub struct Papers {
     pub variant: Variant,
     /// Sweeps of the friction loop, where they take the place of solving it.
     pub sweeps: Option<usize>,
-    /// Its method.
-    pub candidate: Candidate,
+    /// Its method, at the paper's step and then at others.
+    pub candidates: Vec<Candidate>,
 }
 
 /// The way of the paper: Newmark's method with three sweeps for RSRRR, at the program's usual step; RK4 with drift terms for RSUP.
@@ -49,13 +65,28 @@ pub fn papers_way(scene: &str, variant: &Variant) -> Papers {
             if rsrrr { STEP } else { PUBLISHED_STEP },
         )
     };
+    let row = |step, way| Candidate {
+        plan: Plan {
+            step: Some(step),
+            ..plan.clone()
+        },
+        way,
+    };
+    let published = row(if rsrrr { STEP } else { PUBLISHED_STEP }, Way::Published);
+    let others: &[f64] = match (rsrrr, is_stiff(variant)) {
+        // With longer ones the corrector does not settle at the start.
+        (true, _) => &[3e-4, 3e-5],
+        (false, true) => &[2e-5, 1e-5],
+        (false, false) => &[1e-3, 3e-4, 1e-4, 3e-5, 1e-5],
+    };
+    let others = others.iter().map(|step| row(*step, Way::Papers));
     Papers {
         variant: Variant {
             as_published: !rsrrr,
             ..*variant
         },
         sweeps: (rsrrr && variant.friction == Some(true)).then_some(SWEEPS),
-        candidate: Candidate { plan, papers: true },
+        candidates: std::iter::once(published).chain(others).collect(),
     }
 }
 
@@ -71,22 +102,21 @@ pub fn references(variant: &Variant) -> [Plan; 2] {
 /// All rows but the paper's way, each method from its cheapest to its dearest. Penetrations are micrometres, so with clearance
 /// loose tolerances say nothing; and elastic links and contacts need short steps of methods without error control.
 pub fn candidates(variant: &Variant) -> Vec<Candidate> {
-    let all = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
     let tolerances = match (variant.clearance, variant.flexible) {
-        (Some(_), _) => &all[3..8],
-        (None, Some(_)) => &all[..8],
-        (None, None) => &all[..],
+        (Some(_), _) => &TOLERANCES[6..15],
+        (None, Some(_)) => &TOLERANCES[..15],
+        (None, None) => &TOLERANCES[..],
     };
-    let steps: [f64; 3] = if is_stiff(variant) {
-        [2e-5, 1e-5, 5e-6]
+    let steps: &[f64] = if is_stiff(variant) {
+        &[2e-5, 1e-5, 5e-6]
     } else {
-        [1e-2, 1e-3, 1e-4]
+        &[1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5]
     };
-    let adaptive = ["adams", "dop853", "dopri5", "radau5"]
+    let adaptive = ADAPTIVE
         .into_iter()
         .flat_map(|method| tolerances.iter().map(move |&tolerance| adaptive(method, tolerance)));
-    let fixed = steps.into_iter().map(|step| fixed("rk4", step));
-    let row = |plan| Candidate { plan, papers: false };
+    let fixed = steps.iter().map(|step| fixed("rk4", *step));
+    let row = |plan| Candidate { plan, way: Way::Own };
     adaptive.chain(fixed).map(row).collect()
 }
 
@@ -124,11 +154,11 @@ pub struct Experience {
     pub until: f64,
     /// Time of one evaluation \[s\].
     pub evaluation: f64,
-    /// Methods and the times of their runs so far \[s\].
-    pub runs: Vec<(String, f64)>,
+    /// Adaptive runs so far, with their times \[s\].
+    pub runs: Vec<(Candidate, f64)>,
 }
 
-/// Growth of the time of a run from one tolerance to the next.
+/// Growth of the time of a run from one decade of tolerance to the next.
 const GROWTH: f64 = 1.4;
 /// Evaluations in a step of the methods of fixed step: four stages, or the usual sweeps of a corrector.
 const STAGES: f64 = 4.0;
@@ -136,23 +166,41 @@ const STAGES: f64 = 4.0;
 impl Experience {
     /// Time that a row is likely to take \[s\]; zero for the first row of an adaptive method.
     pub fn predict(&self, candidate: &Candidate) -> f64 {
-        match candidate.plan.step {
-            Some(step) => self.until / step * STAGES * self.evaluation,
-            None => {
-                let mut same = self.runs.iter().rev().filter(|run| run.0 == candidate.plan.method);
-                same.next().map_or(0.0, |run| GROWTH * run.1)
-            }
+        if let Some(step) = candidate.plan.step {
+            return self.until / step * STAGES * self.evaluation;
         }
+        let decades = |run: &Candidate| (run.setting() / candidate.setting()).log10();
+        let same = self
+            .runs
+            .iter()
+            .filter(|run| run.0.plan.method == candidate.plan.method);
+        let nearest = same.min_by(|a, b| decades(&a.0).abs().total_cmp(&decades(&b.0).abs()));
+        nearest.map_or(0.0, |(run, time)| time * GROWTH.powf(decades(run)))
     }
 
-    /// Index of the row to measure next: the paper's way, to which others are compared, then the cheapest; `None` if none waits.
+    /// Index of the row to measure next: the paper's way, to which others are compared, then whole decades from the cheapest on, then
+    /// half decades; `None` if none waits.
     pub fn next(&self, waiting: &[Candidate]) -> Option<usize> {
-        let key = |i: &usize| match waiting[*i].papers {
-            true => -1.0,
-            false => self.predict(&waiting[*i]),
+        let key = |i: usize| {
+            let row = &waiting[i];
+            let half = row.setting().log10();
+            let order = match row.way {
+                Way::Published => 0,
+                _ if (half - half.round()).abs() < 0.1 || is_coarse(row) => 1,
+                _ => 2,
+            };
+            (order, self.predict(row))
         };
-        (0..waiting.len()).min_by(|a, b| key(a).total_cmp(&key(b)))
+        (0..waiting.len()).min_by(|&a, &b| {
+            let (a, b) = (key(a), key(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
     }
+}
+
+/// Steps of stiff scenes are few, and none of them is between others.
+fn is_coarse(row: &Candidate) -> bool {
+    row.plan.step.is_some_and(|step| step < 2.5e-5)
 }
 
 #[cfg(test)]
@@ -172,24 +220,27 @@ mod tests {
     fn the_papers_way_comes_first_and_then_what_is_cheapest() {
         let variant = Variant::default();
         let mut waiting = candidates(&variant);
-        waiting.push(papers_way("rsrrr", &variant).candidate);
+        waiting.extend(papers_way("rsrrr", &variant).candidates);
         let mut experience = experience();
         let first = experience.next(&waiting).expect("some wait");
-        assert!(waiting.remove(first).papers);
+        assert_eq!(waiting.remove(first).way, Way::Published);
+        waiting.retain(|row| row.way == Way::Own);
         // Each adaptive method is tried once, at its loosest tolerance, before fixed steps.
-        for name in ["adams", "dop853", "dopri5", "radau5"] {
+        for name in ADAPTIVE {
             let next = waiting.remove(experience.next(&waiting).expect("some wait"));
             assert_eq!((next.plan.method.as_str(), next.setting()), (name, 1e-4));
-            experience
-                .runs
-                .push((name.to_owned(), if name == "radau5" { 1e-4 } else { 1e-2 }));
+            experience.runs.push((next, if name == "radau5" { 1e-4 } else { 1e-2 }));
         }
         // 1.4e-4 s for radau5, 4e-4 s for a hundred steps of rk4.
         let next = waiting.remove(experience.next(&waiting).expect("some wait"));
         assert_eq!((next.plan.method.as_str(), next.setting()), ("radau5", 1e-5));
-        experience.runs.push(("radau5".to_owned(), 1.0));
+        experience.runs.push((next, 1.0));
         let next = waiting.remove(experience.next(&waiting).expect("some wait"));
         assert_eq!((next.plan.method.as_str(), next.setting()), ("rk4", 1e-2));
+        // Half decades come last.
+        waiting.retain(|row| row.plan.method == "adams");
+        let last = std::iter::from_fn(|| Some(waiting.remove(experience.next(&waiting)?))).last();
+        assert_eq!(last.map(|row| row.setting()), Some(3e-12));
         assert_eq!(experience.next(&[]), None);
     }
 
@@ -215,13 +266,13 @@ mod tests {
         };
         let rsrrr = papers_way("rsrrr", &friction);
         assert_eq!(
-            (rsrrr.candidate.plan.method.as_str(), rsrrr.sweeps),
+            (rsrrr.candidates[0].plan.method.as_str(), rsrrr.sweeps),
             ("newmark", Some(3))
         );
         assert!(!rsrrr.variant.as_published);
         let rsup = papers_way("rsup", &Variant::default());
         assert_eq!(
-            (rsup.candidate.plan.method.as_str(), rsup.candidate.setting()),
+            (rsup.candidates[0].plan.method.as_str(), rsup.candidates[0].setting()),
             ("rk4", 5e-6)
         );
         assert!(rsup.variant.as_published && rsup.sweeps.is_none());

@@ -2,7 +2,7 @@
 
 use linkdyn_mechanisms::integrators::Statistics;
 
-use super::candidates::Candidate;
+use super::candidates::{Candidate, Way};
 use super::measure::Measured;
 use super::reference::Known;
 
@@ -50,6 +50,8 @@ pub struct Figures {
     pub positions: Known,
     /// Largest error of a speed \[rad/s, m/s\].
     pub speeds: Known,
+    /// Largest error of a multiplier, a joint's reaction or a contact's force \[N, N m\].
+    pub forces: Known,
     /// Costs without output; with it where there was no repeat.
     pub statistics: Statistics,
     /// Least and longest time of the repeats \[s\]; of the one run with output where there was none.
@@ -64,10 +66,11 @@ pub struct Figures {
 
 impl Figures {
     /// Figures of a run with output.
-    pub fn new(run: &Measured, [positions, speeds]: [Known; 2]) -> Self {
+    pub fn new(run: &Measured, [positions, speeds, forces]: [Known; 3]) -> Self {
         Self {
             positions,
             speeds,
+            forces,
             statistics: run.statistics,
             wall: (run.wall, run.wall),
             repeats: 0,
@@ -93,18 +96,12 @@ impl Figures {
     }
 }
 
-/// The row of the paper's way, if it was run.
+/// The row of the paper's way at the paper's own step, if it was run.
 pub fn papers(rows: &[Row]) -> Option<&Figures> {
-    rows.iter().find(|row| row.candidate.papers)?.outcome.figures()
-}
-
-/// The other row with the least `cost` whose positions are as accurate as `error`.
-pub fn cheapest(rows: &[Row], error: f64, cost: impl Fn(&Figures) -> f64) -> Option<(&Row, &Figures)> {
     rows.iter()
-        .filter(|row| !row.candidate.papers)
-        .filter_map(|row| Some((row, row.outcome.figures()?)))
-        .filter(|(_, figures)| figures.positions.bound() <= error)
-        .min_by(|a, b| cost(a.1).total_cmp(&cost(b.1)))
+        .find(|row| row.candidate.way == Way::Published)?
+        .outcome
+        .figures()
 }
 
 #[cfg(test)]
@@ -123,11 +120,12 @@ pub mod tests {
             worst: Worst::default(),
             energy: 1e-9,
             wall,
+            halt: None,
         }
     }
 
     /// A finished row.
-    pub fn row(method: &str, papers: bool, error: Known, evaluations: u64) -> Row {
+    pub fn row(method: &str, way: Way, error: Known, evaluations: u64) -> Row {
         let plan = Plan {
             method: method.to_owned(),
             rtol: Some(1e-6),
@@ -136,16 +134,16 @@ pub mod tests {
             iterations: None,
             switching: linkdyn_mechanisms::Switching::Located,
         };
-        let figures = Figures::new(&run(1e-6 * evaluations as f64, evaluations), [error, error]);
+        let figures = Figures::new(&run(1e-6 * evaluations as f64, evaluations), [error; 3]);
         Row {
-            candidate: Candidate { plan, papers },
+            candidate: Candidate { plan, way },
             outcome: Outcome::Done(Box::new(figures)),
         }
     }
 
     #[test]
     fn the_least_time_counts_and_output_does_not() {
-        let mut figures = Figures::new(&run(9.0, 900), [Known::Value(1.0); 2]);
+        let mut figures = Figures::new(&run(9.0, 900), [Known::Value(1.0); 3]);
         for wall in [2.0, 1.0, 3.0] {
             figures.repeat(&run(wall, 100));
         }
@@ -153,25 +151,19 @@ pub mod tests {
             (figures.wall, figures.repeats, figures.statistics.evaluations),
             ((1.0, 3.0), 3, 100)
         );
-        let other = Figures::new(&run(4.0, 200), [Known::Value(1.0); 2]);
+        let other = Figures::new(&run(4.0, 200), [Known::Value(1.0); 3]);
         assert_eq!(figures.ratios(&other), (0.5, 0.25));
     }
 
     #[test]
-    fn the_cheapest_row_is_accurate_enough_and_not_the_papers() {
+    fn the_papers_row_is_that_of_its_own_step() {
         let mut rows = vec![
-            row("newmark", true, Known::Value(1e-5), 10),
-            row("rk4", false, Known::Value(1e-3), 20),
-            row("adams", false, Known::Value(1e-6), 50),
-            row("dop853", false, Known::Below(1e-9), 70),
+            row("rk4", Way::Papers, Known::Value(1e-3), 10),
+            row("rk4", Way::Published, Known::Value(1e-5), 20),
+            row("rk4", Way::Own, Known::Value(1e-6), 50),
         ];
-        let method =
-            |rows: &[Row], error| cheapest(rows, error, |f| f.wall.0).map(|(row, _)| row.candidate.plan.method.clone());
-        assert_eq!(method(&rows, 1e-5).as_deref(), Some("adams"));
-        assert_eq!(method(&rows, 1e-7).as_deref(), Some("dop853"));
-        assert_eq!(method(&rows, 1e-10), None);
-        assert!(papers(&rows).is_some());
-        rows[0].outcome = Outcome::NotRun;
+        assert_eq!(papers(&rows).map(|f| f.statistics.evaluations), Some(20));
+        rows[1].outcome = Outcome::NotRun;
         assert!(papers(&rows).is_none());
     }
 }

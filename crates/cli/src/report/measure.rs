@@ -3,14 +3,14 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use linkdyn_mechanisms::integrators::{Integration, Statistics};
-use linkdyn_mechanisms::{RunError, Seen, Simulation, Worst, run_watched};
+use linkdyn_mechanisms::integrators::{Integration, Method, Statistics};
+use linkdyn_mechanisms::{Observation, RunError, Seen, Simulation, Worst, run_watched};
 
 use crate::interrupt::Interrupt;
 use crate::run::Prepared;
 use crate::run::methods::Plan;
 
-/// Coordinates and speeds at one time.
+/// Coordinates, speeds and forces at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     /// Time \[s\].
@@ -19,10 +19,30 @@ pub struct Point {
     pub q: Vec<f64>,
     /// Their speeds \[rad/s, m/s\].
     pub v: Vec<f64>,
+    /// Multipliers, reactions of all joints, and forces of contacts \[N, N m\].
+    pub forces: Vec<f64>,
 }
 
-/// A run that came to its end.
-#[derive(Clone, Debug)]
+impl Point {
+    fn new(o: &Observation) -> Self {
+        let mut forces = o.multipliers.clone();
+        for reaction in &o.reactions {
+            forces.extend(reaction.force.iter().chain(reaction.torque.iter()));
+        }
+        for contact in &o.contacts {
+            forces.extend([contact.normal, contact.tangent[0], contact.tangent[1]]);
+        }
+        Self {
+            t: o.t,
+            q: o.q.clone(),
+            v: o.v.clone(),
+            forces,
+        }
+    }
+}
+
+/// A run, as far as it came.
+#[derive(Clone, Debug, Default)]
 pub struct Measured {
     /// The path at the output times.
     pub path: Vec<Point>,
@@ -34,10 +54,12 @@ pub struct Measured {
     pub energy: f64,
     /// Time on the clock \[s\].
     pub wall: f64,
+    /// Why it did not come to its end, if it did not.
+    pub halt: Option<Halt>,
 }
 
-/// Why there is no measured run.
-#[derive(Debug)]
+/// Why a run did not come to its end.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Halt {
     /// Time is over, or the user asked to stop.
     OutOfTime,
@@ -83,33 +105,30 @@ impl Limit {
 }
 
 /// Runs a scene up to `until` with output every `every` \[s\]; `seen` hears of every step.
-///
-/// # Errors
-/// [`Halt`].
 pub fn measure(
     prepared: &Prepared,
     plan: &Plan,
     (until, every): (f64, f64),
     limit: &Limit,
     mut seen: impl FnMut(),
-) -> Result<Measured, Halt> {
-    let failed = |error: &dyn std::error::Error| Halt::Failed(error.to_string());
-    let mut simulation = Simulation::new(&prepared.mechanism);
-    plan.set_up(&mut simulation);
-    let y = simulation.state_vector(&prepared.start);
-    let settings = plan.settings(&simulation);
-    let integration = Integration::new(simulation, plan.method(), 0.0, &y, settings).map_err(|e| failed(&e))?;
-    let stops = prepared.mechanism.system().stop_times();
-    let mut integration = integration.with_stops(&stops).map_err(|e| failed(&e))?;
-    let (mut path, mut balance, mut energy) = (Vec::new(), None, 0.0_f64);
+) -> Measured {
+    let mut run = Measured::default();
+    let begun = begin(prepared, plan);
+    let mut integration = match begun {
+        Ok(integration) => integration,
+        Err(why) => {
+            run.halt = Some(Halt::Failed(why));
+            return run;
+        }
+    };
+    let mut balance = None;
     let begun = Instant::now();
     let ended = run_watched(&mut integration, until, every, |what| {
         match what {
             Seen::Row(o) => {
-                let (q, v) = (o.q.clone(), o.v.clone());
-                path.push(Point { t: o.t, q, v });
+                run.path.push(Point::new(o));
                 let now = o.energy_balance();
-                energy = energy.max((now - *balance.get_or_insert(now)).abs());
+                run.energy = run.energy.max((now - *balance.get_or_insert(now)).abs());
             }
             Seen::Step { .. } => seen(),
             Seen::Contact { .. } => {}
@@ -120,16 +139,25 @@ pub fn measure(
             ControlFlow::Break(())
         }
     });
-    let wall = begun.elapsed().as_secs_f64();
-    match ended {
-        Ok(()) => Ok(Measured {
-            path,
-            statistics: integration.statistics(),
-            worst: integration.problem().worst(),
-            energy,
-            wall,
-        }),
-        Err(RunError::Stopped { .. }) => Err(Halt::OutOfTime),
-        Err(error) => Err(failed(&error)),
-    }
+    run.wall = begun.elapsed().as_secs_f64();
+    run.statistics = integration.statistics();
+    run.worst = integration.problem().worst();
+    run.halt = match ended {
+        Ok(()) => None,
+        Err(RunError::Stopped { .. }) => Some(Halt::OutOfTime),
+        Err(error) => Some(Halt::Failed(error.to_string())),
+    };
+    run
+}
+
+type Running = Integration<Simulation, Box<dyn Method<Simulation>>>;
+
+fn begin(prepared: &Prepared, plan: &Plan) -> Result<Running, String> {
+    let mut simulation = Simulation::new(&prepared.mechanism);
+    plan.set_up(&mut simulation);
+    let y = simulation.state_vector(&prepared.start);
+    let settings = plan.settings(&simulation);
+    let integration = Integration::new(simulation, plan.method(), 0.0, &y, settings).map_err(|e| e.to_string())?;
+    let stops = prepared.mechanism.system().stop_times();
+    integration.with_stops(&stops).map_err(|e| e.to_string())
 }

@@ -5,13 +5,15 @@ use super::measure::Point;
 /// Two references that differ by more than this share of the scene's scale say nothing any more.
 const AGREEMENT: f64 = 1e-3;
 
-/// Errors of coordinates \[rad, m\] and of speeds \[rad/s, m/s\].
+/// Errors of coordinates \[rad, m\], of speeds \[rad/s, m/s\] and of joint forces \[N, N m\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
     /// Largest error of a coordinate.
     pub positions: f64,
     /// Largest error of a speed.
     pub speeds: f64,
+    /// Largest error of a multiplier, of a component of a joint's reaction, or of a contact's force.
+    pub forces: f64,
 }
 
 impl Errors {
@@ -20,6 +22,7 @@ impl Errors {
         Self {
             positions: largest(&a.q, &b.q),
             speeds: largest(&a.v, &b.v),
+            forces: largest(&a.forces, &b.forces),
         }
     }
 
@@ -28,6 +31,7 @@ impl Errors {
         Self {
             positions: self.positions.max(other.positions),
             speeds: self.speeds.max(other.speeds),
+            forces: self.forces.max(other.forces),
         }
     }
 }
@@ -77,9 +81,9 @@ impl Known {
 pub struct Reference {
     /// The path up to the horizon.
     path: Vec<Point>,
-    /// Time up to which both references agree \[s\].
+    /// Time up to which both references reach and agree \[s\].
     pub horizon: f64,
-    /// Whether that is the whole run.
+    /// Whether that is as far as both of them reached.
     pub whole: bool,
     /// Largest disagreement up to the horizon, never less than rounding.
     pub accuracy: Errors,
@@ -98,19 +102,21 @@ impl Reference {
         if count < 2 {
             return None;
         }
-        let whole = count == first.len() && count == second.len();
+        let whole = count == disagreement.len();
         let mut path = first;
         path.truncate(count);
         let rounding = path.iter().fold(Errors::default(), |most, point| {
-            let zeros = vec![0.0; point.q.len().max(point.v.len())];
+            let rounding = |x: &[f64]| f64::EPSILON * x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             most.or(Errors {
-                positions: f64::EPSILON * largest(&point.q, &zeros),
-                speeds: f64::EPSILON * largest(&point.v, &zeros),
+                positions: rounding(&point.q),
+                speeds: rounding(&point.v),
+                forces: rounding(&point.forces),
             })
         });
         let least = Errors {
             positions: f64::MIN_POSITIVE,
             speeds: f64::MIN_POSITIVE,
+            forces: f64::MIN_POSITIVE,
         };
         let worst = disagreement[..count].iter().fold(rounding, |most, (_, e)| most.or(*e));
         Some(Self {
@@ -122,8 +128,8 @@ impl Reference {
         })
     }
 
-    /// Largest errors of a path up to the horizon, positions and speeds; `None` if it does not reach that.
-    pub fn errors(&self, path: &[Point]) -> Option<[Known; 2]> {
+    /// Largest errors of a path up to the horizon, positions, speeds and forces; `None` if it does not reach that.
+    pub fn errors(&self, path: &[Point]) -> Option<[Known; 3]> {
         let reached = path.len() >= self.path.len() && self.path.iter().zip(path).all(|(a, b)| a.t == b.t);
         let pairs = self.path.iter().zip(path);
         let worst = pairs.fold(Errors::default(), |most, (a, b)| most.or(Errors::between(a, b)));
@@ -131,6 +137,7 @@ impl Reference {
             [
                 Known::new(worst.positions, self.accuracy.positions),
                 Known::new(worst.speeds, self.accuracy.speeds),
+                Known::new(worst.forces, self.accuracy.forces),
             ]
         })
     }
@@ -147,6 +154,7 @@ mod tests {
             t: i as f64,
             q: vec![1.0, 1.0 + x],
             v: vec![10.0 * x],
+            forces: vec![100.0 * x],
         };
         values.iter().enumerate().map(point).collect()
     }
@@ -162,8 +170,9 @@ mod tests {
         assert_eq!(reference.disagreement.len(), 5);
         // Large errors come after the horizon only.
         let run = path(&[0.0, 1e-6, 0.0, 7.0, 7.0]);
-        let [positions, speeds] = reference.errors(&run).expect("reaches the horizon");
+        let [positions, speeds, forces] = reference.errors(&run).expect("reaches the horizon");
         assert!((positions.bound() - 1e-6).abs() < 1e-15 && (speeds.bound() - 1e-5).abs() < 1e-15);
+        assert!((forces.bound() - 1e-4).abs() < 1e-15);
         // A smaller scale has an earlier horizon.
         let reference = Reference::new(path(&[0.0; 5]), &second, 1.5e-6).expect("agrees at first");
         assert_eq!(reference.horizon, 1.0);
@@ -173,11 +182,11 @@ mod tests {
     fn errors_below_the_accuracy_are_bounds() {
         let reference = Reference::new(path(&[0.0; 3]), &path(&[0.0, 1e-9, 0.0]), 1.0).expect("agrees");
         assert!(reference.whole);
-        let [positions, speeds] = reference.errors(&path(&[0.0, 1e-10, 0.0])).expect("whole");
+        let [positions, speeds, forces] = reference.errors(&path(&[0.0, 1e-10, 0.0])).expect("whole");
         assert!(matches!(positions, Known::Below(_)) && matches!(speeds, Known::Below(_)));
         assert_eq!(
-            (positions.shown(), speeds.shown()),
-            ("< 1.0e-9".into(), "< 1.0e-8".into())
+            (positions.shown(), speeds.shown(), forces.shown()),
+            ("< 1.0e-9".into(), "< 1.0e-8".into(), "< 1.0e-7".into())
         );
     }
 
@@ -200,7 +209,7 @@ mod tests {
     fn a_run_that_ends_before_the_horizon_has_no_error() {
         let reference = Reference::new(path(&[0.0; 3]), &path(&[0.0; 3]), 1.0).expect("agrees");
         assert!(reference.errors(&path(&[0.0; 2])).is_none());
-        let [positions, _] = reference.errors(&path(&[0.0, f64::NAN, 0.0])).expect("has all rows");
+        let [positions, ..] = reference.errors(&path(&[0.0, f64::NAN, 0.0])).expect("has all rows");
         assert_eq!(positions, Known::Value(f64::INFINITY));
     }
 
@@ -214,9 +223,10 @@ mod tests {
                 let count = reference.path.len();
                 prop_assert!(second[..count].iter().all(|x| x.abs() <= AGREEMENT * (1.0 + 1e-9)));
                 prop_assert_eq!(reference.whole, count == second.len());
-                if let Some([positions, speeds]) = reference.errors(&path(&run)) {
+                if let Some([positions, speeds, forces]) = reference.errors(&path(&run)) {
                     prop_assert!(positions.bound() >= reference.accuracy.positions);
                     prop_assert!(speeds.bound() >= reference.accuracy.speeds);
+                    prop_assert!(forces.bound() >= reference.accuracy.forces);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The integration methods by name, and the tolerances or steps that go with them.
 
 use linkdyn_mechanisms::integrators::{
-    Adams, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Settings,
+    Adams, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Settings,
 };
 use linkdyn_mechanisms::{Simulation, Switching};
 use serde::Serialize;
@@ -26,8 +26,9 @@ pub struct Plan {
     pub switching: Switching,
 }
 
-/// Methods with error control, and methods of fixed step.
-pub(crate) const ADAPTIVE: [&str; 4] = ["adams", "dop853", "dopri5", "radau5"];
+/// Methods with error control.
+pub(crate) const ADAPTIVE: [&str; 5] = ["adams", "dop853", "dopri5", "radau5", "bdf"];
+/// Methods of fixed step.
 pub(crate) const FIXED: [&str; 2] = ["rk4", "newmark"];
 
 /// Default tolerance, relative and absolute \[rad, m, rad/s, m/s\].
@@ -76,7 +77,7 @@ impl Plan {
         if fixed && (args.rtol.is_some() || args.atol.is_some()) {
             return misplaced(
                 "--rtol/--atol",
-                "give its `--step`, or take an adaptive method: adams, dop853, dopri5, radau5",
+                "give its `--step`, or take an adaptive method: adams, dop853, dopri5, radau5, bdf",
             );
         }
         if !fixed && args.step.is_some() {
@@ -94,7 +95,7 @@ impl Plan {
             .map(|_| args.variant.clearance_size.unwrap_or(CLEARANCE));
         let (usual, loosest) = match clearance {
             Some(size) => (CONTACT_TOLERANCE * size, CONTACT_LOOSEST * size),
-            None if method == "radau5" => (STIFF_TOLERANCE, LOOSEST),
+            None if ["radau5", "bdf"].contains(&method) => (STIFF_TOLERANCE, LOOSEST),
             None => (TOLERANCE, LOOSEST),
         };
         let rtol = args.rtol.unwrap_or(usual);
@@ -129,6 +130,7 @@ impl Plan {
             "dop853" => Box::new(Dop853::default()),
             "dopri5" => Box::new(DormandPrince5::default()),
             "radau5" => Box::new(Radau5::default()),
+            "bdf" => Box::new(Bdf::default()),
             "rk4" => Box::new(Rk4::new(step)),
             "newmark" => Box::new(Newmark::new(step, self.corrector())),
             _ => Box::new(Adams::default()),
