@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
 mod adams;
+mod alpha;
+mod constrained;
 mod control;
 mod error;
 mod event;
@@ -21,6 +23,8 @@ mod sums;
 mod weights;
 
 pub use adams::Adams;
+pub use alpha::GeneralisedAlpha;
+pub use constrained::{Constrained, Equations, Form, Place, SingularConstraints, Terms};
 pub use error::IntegrationError;
 pub use integration::{Integration, Progress};
 pub use method::{Counted, Method, Step};

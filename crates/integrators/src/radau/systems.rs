@@ -15,6 +15,15 @@ pub(crate) struct Layout {
     pub pairs: usize,
     /// All but the quadratures at the end.
     pub active: usize,
+    /// Those at the end of the active ones whose equation is 0 = fᵢ.
+    pub algebraic: usize,
+}
+
+impl Layout {
+    /// The number of components with which y begins that are neither algebraic nor quadratures.
+    pub(crate) fn differential(&self) -> usize {
+        self.active - self.algebraic
+    }
 }
 
 /// The factors of λ − h J without its positions: J begins with rows (0, 1, 0), so the system
@@ -22,7 +31,7 @@ pub(crate) struct Layout {
 /// λ x_q − h x_v = r_q, λ x − h J x = r in the other rows
 ///
 /// is solved by x_q = (r_q + h x_v) / λ and (λ − h J' − h² A / λ) x = r + h A r_q / λ, where A is what J has in the columns of the
-/// positions (added to those of their rates) and J' the rest of it.
+/// positions (added to those of their rates) and J' the rest of it. In algebraic rows λ x is missing.
 #[derive(Debug, Clone)]
 struct Reduced<T> {
     lambda: T,
@@ -46,8 +55,9 @@ where
         }
     }
 
-    fn factorise(&mut self, Layout { dim, pairs, active }: Layout, jacobian: &[f64], h: f64) -> Result<(), Singular> {
-        let size = active - pairs;
+    fn factorise(&mut self, layout: Layout, jacobian: &[f64], h: f64) -> Result<(), Singular> {
+        let Layout { dim, pairs, active, .. } = layout;
+        let (size, differential) = (active - pairs, layout.differential() - pairs);
         let positions = self.inverse_lambda * (h * h);
         let rows = jacobian[pairs * dim..].chunks_exact(dim.max(1));
         for (i, (row, target)) in rows.zip(self.factors.chunks_exact_mut(size.max(1))).enumerate() {
@@ -57,7 +67,9 @@ where
             for (target, &entry) in target.iter_mut().zip(&row[..pairs]) {
                 *target += -(positions * entry);
             }
-            target[i] += self.lambda;
+            if i < differential {
+                target[i] += self.lambda;
+            }
         }
         factorise(&mut self.factors, &mut self.pivots)
     }
@@ -65,7 +77,7 @@ where
     /// Solves in place; `get` and `set` reach the components of the right-hand side.
     fn solve<R: ?Sized>(
         &mut self,
-        Layout { dim, pairs, active }: Layout,
+        Layout { dim, pairs, active, .. }: Layout,
         (jacobian, h): (&[f64], f64),
         r: &mut R,
         get: impl Fn(&R, usize) -> T,
@@ -162,19 +174,24 @@ mod tests {
         fn solutions_fulfil_the_full_equations(
             pairs in 0_usize..4,
             others in 0_usize..3,
+            algebraic in 0_usize..3,
             quadratures in 0_usize..3,
             h in prop_oneof![-1.0..1.0, Just(1e-9)],
-            entries in proptest::collection::vec(-1.0..1.0, 100),
+            entries in proptest::collection::vec(-1.0..1.0, 144),
             right in proptest::collection::vec(-1.0..1.0, 20),
         ) {
-            let active = 2 * pairs + others;
+            let active = 2 * pairs + others + algebraic;
             let dim = active + quadratures;
-            let layout = Layout { dim, pairs, active };
+            let layout = Layout { dim, pairs, active, algebraic };
+            let differential = layout.differential();
             let entry = |i: usize, j: usize| match (i < pairs, j < active) {
                 (true, _) => f64::from(u8::from(j == pairs + i)),
+                // Algebraic equations can be solved for their components.
+                (false, true) if i == j && i >= differential => -10.0 / h,
                 (false, true) => entries[i * dim + j],
                 (false, false) => 0.0,
             };
+            let factor = |i: usize| if i < differential { 1.0 } else { 0.0 };
             let mut jacobian: Vec<f64> = (0..dim * dim).map(|ij| entry(ij / dim, ij % dim)).collect();
             let mut systems = Systems::new(layout, 10.0, Complex64::new(10.0, 3.0));
             // What stands in the rows of the positions is known, and not read.
@@ -185,9 +202,9 @@ mod tests {
             systems.solve_complex(&jacobian, (&mut u, &mut v));
             for i in 0..active {
                 let times = |x: &[f64]| (0..active).map(|j| h * entry(i, j) * x[j]).sum::<f64>();
-                prop_assert!((10.0 * x[i] - times(&x) - right[i]).abs() < 1e-13);
-                prop_assert!((10.0 * u[i] - 3.0 * v[i] - times(&u) - right[i]).abs() < 1e-13);
-                prop_assert!((3.0 * u[i] + 10.0 * v[i] - times(&v) - right[10 + i]).abs() < 1e-13);
+                prop_assert!((10.0 * factor(i) * x[i] - times(&x) - right[i]).abs() < 1e-13);
+                prop_assert!((factor(i) * (10.0 * u[i] - 3.0 * v[i]) - times(&u) - right[i]).abs() < 1e-13);
+                prop_assert!((factor(i) * (3.0 * u[i] + 10.0 * v[i]) - times(&v) - right[10 + i]).abs() < 1e-13);
             }
         }
     }
@@ -198,6 +215,7 @@ mod tests {
             dim: 1,
             pairs: 0,
             active: 1,
+            algebraic: 0,
         };
         let mut systems = Systems::new(layout, 1.0, Complex64::new(1.0, 1.0));
         assert!(!systems.fit(0.1));

@@ -1,6 +1,8 @@
 //! Public behaviour of the crate.
 
 mod any_numbers;
+mod benchmark_01_andrews_squeezer;
+mod benchmark_04_pendulum_index3;
 mod benchmark_05_standard_odes;
 mod convergence;
 mod counters;
