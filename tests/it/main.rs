@@ -14,6 +14,7 @@ mod denavit_hartenberg;
 mod derivatives;
 mod energy;
 mod flexible_link;
+mod forms;
 mod implicit;
 mod invariances;
 mod linkage_refusals;

@@ -63,6 +63,11 @@ impl<'a, P: Ode + ?Sized> Counted<'a, P> {
         self.statistics.factorisations += matrices;
     }
 
+    /// The problem, to ask for its structure.
+    pub(crate) fn structure(&self) -> &P {
+        self.problem
+    }
+
     /// The problem itself, for one evaluation that is not of [`Ode::rhs`]; it is counted.
     pub(crate) fn for_evaluation(&mut self) -> &mut P {
         self.statistics.evaluations += 1;

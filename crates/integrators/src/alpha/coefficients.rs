@@ -73,10 +73,18 @@ mod tests {
         assert_eq!((trapezoidal.beta, trapezoidal.gamma), (0.25, 0.5));
         let (q, v) = trapezoidal.local_errors();
         assert!((q + 1.0 / 12.0).abs() < 1e-15 && (v + 1.0 / 12.0).abs() < 1e-15);
-        for bad in [Coefficients::of_radius(-0.1), Coefficients::of_radius(1.1), Coefficients::of_radius(f64::NAN)] {
+        for bad in [
+            Coefficients::of_radius(-0.1),
+            Coefficients::of_radius(1.1),
+            Coefficients::of_radius(f64::NAN),
+        ] {
             assert!(bad.check().is_err(), "{bad:?}");
         }
-        for bad in [Coefficients::hht(-0.1), Coefficients::hht(0.6), Coefficients::hht(f64::NAN)] {
+        for bad in [
+            Coefficients::hht(-0.1),
+            Coefficients::hht(0.6),
+            Coefficients::hht(f64::NAN),
+        ] {
             assert!(bad.check().is_err(), "{bad:?}");
         }
         for radius in [0.0, 0.5, 0.8, 1.0] {

@@ -21,7 +21,9 @@ use newton::Newton;
 /// rates and multipliers are of order 2; a is an auxiliary variable of the method that starts, and goes on where the length of the step
 /// changes, at the time to which it belongs. With [projection](Equations::with_projection) the rates keep g' = 0 too.
 ///
-/// Local errors of positions and rates are estimated from the changes of a; the multipliers follow. Each iteration costs one
+/// Local errors of positions and rates are estimated from the changes of a, those of rates multiplied by h as for any component of
+/// [index](crate::Ode::index) 2: where the step changes, so
+/// does their error across the constraints. With steps that vary, multipliers are accurate with projection only. Each iteration costs one
 /// evaluation of the [terms](crate::Terms), a new matrix one more and n for differences, unless the problem gives its tangents.
 #[derive(Debug, Clone)]
 pub struct GeneralisedAlpha {
@@ -65,6 +67,9 @@ const SLOW: f64 = 0.1;
 
 /// Part of the tolerance that may remain of Newton's iteration.
 const GOAL: f64 = 0.01;
+
+/// Steps that would change by no more than this stay as they are.
+const NOT_WORTH_A_NEW_MATRIX: std::ops::RangeInclusive<f64> = 0.9..=1.3;
 
 /// Part of a step over which v'' is found at a start: truncation and rounding of it are small beside the error of a step.
 const FIRST_PART: f64 = 1e-3;
@@ -161,17 +166,14 @@ impl GeneralisedAlpha {
             }
         }
         let rounding = f64::EPSILON / weights.least_relative();
-        // Fixed steps are solved to rounding, which is larger in rates by 1/h; the estimate of adaptive ones needs the rates themselves.
-        let (convergence, factor) = match self.fixed {
-            None => (Convergence::new(MOST_ITERATIONS, rounding.max(GOAL), true, self.left), 1.0),
-            Some(_) => (Convergence::new(MOST_ITERATIONS_FIXED, rounding, false, 1.0), h),
+        let convergence = match self.fixed {
+            None => Convergence::new(MOST_ITERATIONS, rounding.max(GOAL), true, self.left),
+            Some(_) => Convergence::new(MOST_ITERATIONS_FIXED, rounding, false, 1.0),
         };
         let mut convergence = convergence.with_patience();
-        let n = self.a_start.len();
         loop {
             problem.count_iteration();
             self.newton.iterate(problem, (t, h), &self.coefficients, change)?;
-            change[n..2 * n].iter_mut().for_each(|change| *change *= factor);
             match convergence.judge(weights.norm(step.y, step.y, change)) {
                 Verdict::GoOn => {}
                 Verdict::Converged => break,
@@ -196,7 +198,9 @@ impl<P: Constrained> Method<Equations<P>> for GeneralisedAlpha {
 
     fn prepare(&mut self, problem: &Equations<P>) -> Result<(), SettingsError> {
         if problem.form() != Form::Index3 {
-            return Err(SettingsError::Method("the generalised-alpha method takes the form Index3"));
+            return Err(SettingsError::Method(
+                "the generalised-alpha method takes the form Index3",
+            ));
         }
         self.coefficients.check()?;
         let (n, m) = problem.counts();
@@ -268,7 +272,7 @@ impl<P: Constrained> Method<Equations<P>> for GeneralisedAlpha {
             let a = ((1.0 - alpha_f) * rate + alpha_f * before - alpha_m * self.a_start[i]) / (1.0 - alpha_m);
             (f[n + i], jerk[i], offset[i]) = (rate, (rate - before) / h, (a - rate) / h);
             error[i] = of_positions * h * h * (a - self.a_start[i]);
-            error[n + i] = of_rates * h * (rate - self.predicted[i]);
+            error[n + i] = of_rates * h * h.abs() * (rate - self.predicted[i]);
         }
         for ((slope, new), old) in f[2 * n..].iter_mut().zip(&y_new[2 * n..]).zip(&step.y[2 * n..]) {
             *slope = (new - old) / h;
@@ -309,7 +313,15 @@ impl<P: Constrained> Method<Equations<P>> for GeneralisedAlpha {
         match (self.fixed, self.shorten.take()) {
             (Some(step), _) => step,
             (None, Some(factor)) => factor * h,
-            (None, None) => self.control.next(h, error),
+            (None, None) => {
+                let next = self.control.next(h, error);
+                // The matrix serves again.
+                if error <= 1.0 && NOT_WORTH_A_NEW_MATRIX.contains(&(next / h)) {
+                    h
+                } else {
+                    next
+                }
+            }
         }
     }
 

@@ -97,7 +97,8 @@ impl Newton {
         self.factors.fill(0.0);
         for i in 0..n {
             for j in 0..n {
-                self.factors[i * size + j] = coefficients.share() / coefficients.beta * inverse * terms.matrix[i * n + j];
+                self.factors[i * size + j] =
+                    coefficients.share() / coefficients.beta * inverse * terms.matrix[i * n + j];
             }
         }
         for (k, row) in terms.gradient.chunks_exact(n.max(1)).enumerate() {
@@ -135,7 +136,11 @@ impl Newton {
         for j in 0..n {
             let (q, v) = (self.y[j], self.y[n + j]);
             // Neither of the two may be lost in rounding, nor vary by more than a small part of itself or of 1.
-            let increment = PART * q.abs().max(1.0).min(v.abs().max(1.0) / to_rates.abs()).max(1e-3 * q.abs());
+            let increment = PART
+                * q.abs()
+                    .max(1.0)
+                    .min(v.abs().max(1.0) / to_rates.abs())
+                    .max(1e-3 * q.abs());
             self.y[j] = q + increment;
             self.y[n + j] = v + increment * to_rates;
             let terms = problem.for_difference().evaluate(t, &self.y);
@@ -150,7 +155,7 @@ impl Newton {
         Ok(())
     }
 
-    /// One iteration for a step of length `h`: the changes of (q, v, λ) into `change`, that of λ multiplied by h².
+    /// One iteration for a step of length `h`: the changes of (q, v, λ) into `change`, those of v and λ multiplied by h and h².
     pub(crate) fn iterate<P: Constrained>(
         &mut self,
         problem: &mut Counted<'_, Equations<P>>,
@@ -173,7 +178,7 @@ impl Newton {
             self.y[j] += x;
             self.y[n + j] += gamma / (beta * h) * x;
             self.rate[j] += coefficients.share() / (beta * squared) * x;
-            (change[j], change[n + j]) = (x, gamma / (beta * h) * x);
+            (change[j], change[n + j]) = (x, gamma / beta * x);
         }
         for ((lambda, x), change) in self.lambda.iter_mut().zip(&self.x[n..]).zip(&mut change[2 * n..]) {
             *lambda += self.scale / squared * x;

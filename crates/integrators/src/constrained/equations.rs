@@ -211,7 +211,10 @@ impl<P: Constrained> Equations<P> {
         self.saddle.factorise(&self.terms, t)?;
         let (accelerations, multipliers) = self.saddle.x.split_at_mut(n);
         accelerations.copy_from_slice(&self.terms.force);
-        multipliers.iter_mut().zip(&self.terms.bias).for_each(|(x, bias)| *x = -bias);
+        multipliers
+            .iter_mut()
+            .zip(&self.terms.bias)
+            .for_each(|(x, bias)| *x = -bias);
         self.saddle.solve();
         Ok(&self.saddle.x)
     }
@@ -241,14 +244,20 @@ impl<P: Constrained> Equations<P> {
             (corrections, before) = (corrections + 1, residual);
         }
         let rates = constraint_rates(&self.terms, &y[n..2 * n]);
-        self.saddle.x[n..].iter_mut().zip(rates).for_each(|(x, rate)| *x = -rate);
+        self.saddle.x[n..]
+            .iter_mut()
+            .zip(rates)
+            .for_each(|(x, rate)| *x = -rate);
         if largest(&self.saddle.x[n..]) <= ROUNDING * largest(&y[n..2 * n]).max(1.0) {
             return Ok(corrections > 0);
         }
         self.saddle.x[..n].fill(0.0);
         self.saddle.factorise(&self.terms, t)?;
         self.saddle.solve();
-        y[n..2 * n].iter_mut().zip(&self.saddle.x[..n]).for_each(|(v, x)| *v += x);
+        y[n..2 * n]
+            .iter_mut()
+            .zip(&self.saddle.x[..n])
+            .for_each(|(v, x)| *v += x);
         Ok(true)
     }
 }
@@ -304,7 +313,10 @@ impl<P: Constrained> Ode for Equations<P> {
                     *dy = row.iter().zip(&*rates).map(|(g, a)| g * a).sum::<f64>() + bias;
                 }
             }
-            Form::Index2 => rest.iter_mut().zip(constraint_rates(terms, v)).for_each(|(dy, rate)| *dy = rate),
+            Form::Index2 => rest
+                .iter_mut()
+                .zip(constraint_rates(terms, v))
+                .for_each(|(dy, rate)| *dy = rate),
             Form::Stabilised => {
                 corrections.fill(0.0);
                 for (row, mu) in gradient().zip(&y[2 * n + m..]) {
@@ -313,7 +325,10 @@ impl<P: Constrained> Ode for Equations<P> {
                 solve(&self.factors, &self.pivots, corrections);
                 positions.iter_mut().zip(&*corrections).for_each(|(dy, c)| *dy += c);
                 let (first, second) = rest.split_at_mut(m);
-                first.iter_mut().zip(constraint_rates(terms, v)).for_each(|(dy, rate)| *dy = rate);
+                first
+                    .iter_mut()
+                    .zip(constraint_rates(terms, v))
+                    .for_each(|(dy, rate)| *dy = rate);
                 second.copy_from_slice(&terms.constraint);
             }
             Form::Index3 => rest.copy_from_slice(&terms.constraint),

@@ -264,7 +264,9 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
     fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
         let (dim, pairs, quadratures) = (problem.dim(), problem.second_order_pairs(), problem.quadratures());
         let algebraic = problem.algebraic();
-        let left = dim.checked_sub(quadratures).and_then(|left| left.checked_sub(algebraic));
+        let left = dim
+            .checked_sub(quadratures)
+            .and_then(|left| left.checked_sub(algebraic));
         if pairs > dim || left.is_none_or(|left| 2 * pairs > left) {
             return Err(SettingsError::Method(
                 "more pairs of positions and rates, algebraic components and quadratures than components",
