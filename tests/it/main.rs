@@ -16,6 +16,7 @@ mod energy;
 mod extreme_runs;
 mod extremes;
 mod flexible_link;
+mod forms;
 mod implicit;
 mod invariances;
 mod linkage_refusals;

@@ -97,7 +97,7 @@ impl System {
 
     /// Generalised forces and outside wrenches of all loads, and the power of those that are not conservative.
     #[inline]
-    fn apply_loads(&self, at: &Instant<'_>, work: &mut Workspace) -> Result<(), DynamicsError> {
+    pub(crate) fn apply_loads(&self, at: &Instant<'_>, work: &mut Workspace) -> Result<(), DynamicsError> {
         work.generalised.fill(0.0);
         work.own.fill(Wrench::zero());
         work.power = 0.0;
@@ -149,7 +149,7 @@ impl System {
 
     /// Adds the links' inertial wrenches for vanishing rates to the outside ones.
     #[inline]
-    fn own_wrenches(&self, work: &mut Workspace) {
+    pub(crate) fn own_wrenches(&self, work: &mut Workspace) {
         for (i, body) in self.bodies.iter().enumerate().skip(1) {
             let inertia = body.turned(&work.positions.nodes()[i].rotation);
             let w = &work.velocities.nodes()[i].angular;

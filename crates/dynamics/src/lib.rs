@@ -23,6 +23,7 @@ mod response;
 mod supports;
 mod symmetric;
 mod system;
+mod terms;
 mod workspace;
 
 pub use energy::Energy;
@@ -31,4 +32,5 @@ pub use inertia::{InertiaError, RigidInertia};
 pub use load::{Capacity, Instant, InternalState, Internals, Load, Loads, Motion, Reaction, ReactionLoad, Supports};
 pub use project::Drift;
 pub use system::{Baumgarte, Description, Formulation, Place, ReactionSolver, System};
+pub use terms::MotionTerms;
 pub use workspace::{Counters, Workspace};

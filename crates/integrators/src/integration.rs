@@ -114,6 +114,9 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
         if let Some(step) = method.fixed_step() {
             check_step("step of the method", step)?;
         }
+        if problem.algebraic() > 0 && !method.solves_algebraic() {
+            return Err(SettingsError::Method("it cannot solve algebraic equations; implicit methods can").into());
+        }
         method.prepare(&problem)?;
         Ok(Self {
             events: Events::new(problem.roots(), dim),

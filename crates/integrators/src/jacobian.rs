@@ -32,10 +32,18 @@ pub(crate) fn differences<P: Ode + ?Sized>(
 ) -> Result<(), EvalError> {
     let n = y.len();
     y_varied.copy_from_slice(y);
+    let structure = problem.structure();
+    let end = n - structure.quadratures().min(n);
+    let algebraic = end - structure.algebraic().min(end)..end;
     let motion = h.abs() * weights.norm(y, y, f);
     for column in 0..columns {
         let toward = if h * f[column] < 0.0 { -1.0 } else { 1.0 };
-        let increment = toward * increment(y[column], h * f[column], weights.of(column, y[column]), motion);
+        let weight = weights.of(column, y[column]);
+        let mut increment = toward * increment(y[column], h * f[column], weight, motion);
+        if algebraic.contains(&column) {
+            let excess = problem.structure().index(column).saturating_sub(1);
+            increment = toward * increment.abs().max(least(weight / h.abs().powi(excess as i32)));
+        }
         y_varied[column] = y[column] + increment;
         let mut varied = problem.rhs_for_jacobian(t, y_varied, f_varied);
         if let Err(EvalError::Retry(_)) = varied {
@@ -56,6 +64,16 @@ pub(crate) fn differences<P: Ode + ?Sized>(
         }
     }
     Ok(())
+}
+
+/// The least by which to vary an algebraic component of this tolerance: it may be far smaller than its effects are large, so the
+/// geometric mean of the tolerance and of rounding of 1 (subroutine RADAU5 takes 1e-5 for any tolerance).
+fn least(weight: f64) -> f64 {
+    if weight.is_finite() {
+        (f64::EPSILON * weight).sqrt()
+    } else {
+        0.0
+    }
 }
 
 /// By how much to vary a component `y` of tolerance `weight` that changes by `change` in the step; `motion` is the norm of all

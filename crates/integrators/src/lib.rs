@@ -1,7 +1,9 @@
 #![doc = include_str!("../README.md")]
 
 mod adams;
+mod alpha;
 mod bdf;
+mod constrained;
 mod control;
 mod error;
 mod event;
@@ -24,7 +26,9 @@ mod sums;
 mod weights;
 
 pub use adams::Adams;
+pub use alpha::GeneralisedAlpha;
 pub use bdf::Bdf;
+pub use constrained::{Constrained, Equations, Form, Place, SingularConstraints, Terms};
 pub use error::IntegrationError;
 pub use integration::{Integration, Progress};
 pub use method::{Counted, Method, Step};

@@ -63,6 +63,29 @@ impl<'a, P: Ode + ?Sized> Counted<'a, P> {
         self.statistics.factorisations += matrices;
     }
 
+    /// The problem, to ask for its structure.
+    pub(crate) fn structure(&self) -> &P {
+        self.problem
+    }
+
+    /// The problem itself, for one evaluation that is not of [`Ode::rhs`]; it is counted.
+    pub(crate) fn for_evaluation(&mut self) -> &mut P {
+        self.statistics.evaluations += 1;
+        self.problem
+    }
+
+    /// As [`for_evaluation`](Counted::for_evaluation), for differences.
+    pub(crate) fn for_difference(&mut self) -> &mut P {
+        self.statistics.jacobian_evaluations += 1;
+        self.for_evaluation()
+    }
+
+    /// The problem itself, asked for a matrix, which is counted.
+    pub(crate) fn for_matrix(&mut self) -> &mut P {
+        self.statistics.jacobians += 1;
+        self.problem
+    }
+
     /// Evaluates and counts the root functions.
     pub(crate) fn root(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), EvalError> {
         self.statistics.root_evaluations += 1;
@@ -176,6 +199,11 @@ pub trait Method<P: ?Sized> {
     fn is_multistep(&self) -> bool {
         false
     }
+
+    /// Whether the method solves [algebraic equations](Ode::algebraic); the driver refuses them otherwise.
+    fn solves_algebraic(&self) -> bool {
+        false
+    }
 }
 
 /// A method chosen at run time.
@@ -238,5 +266,8 @@ impl<P: Ode + ?Sized> Method<P> for Box<dyn Method<P> + '_> {
     }
     fn is_multistep(&self) -> bool {
         (**self).is_multistep()
+    }
+    fn solves_algebraic(&self) -> bool {
+        (**self).solves_algebraic()
     }
 }

@@ -4,6 +4,9 @@
 /// would be a hundred times larger and still no matter.
 const ROUNDING: f64 = 1e-4;
 
+/// A ratio of the first two changes is taken for no more than this where there is patience.
+const LARGEST_FIRST: f64 = 0.9;
+
 /// What one more iteration has shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Verdict {
@@ -24,6 +27,8 @@ pub(crate) struct Convergence {
     goal: f64,
     /// Whether to give up as soon as the goal is out of reach within `most` iterations.
     foresight: bool,
+    /// Whether a second change may be as large as the first.
+    patience: bool,
     iterations: u32,
     change: f64,
     ratio: f64,
@@ -39,12 +44,20 @@ impl Convergence {
             most,
             goal,
             foresight,
+            patience: false,
             iterations: 0,
             change: 0.0,
             ratio: 0.0,
             contraction: 0.0,
             left: left.max(f64::EPSILON).powf(0.8),
         }
+    }
+
+    /// Does not take the second change for a sign of divergence. In problems of higher index an iteration reduces the error of some
+    /// components only, and that of the others in the next: two together tell how it converges.
+    pub(crate) fn with_patience(mut self) -> Self {
+        self.patience = true;
+        self
     }
 
     /// Judges after an iteration which changed the stages by the norm `change`.
@@ -58,6 +71,9 @@ impl Convergence {
             let (ratio, before) = (change / self.change.max(f64::EPSILON), self.ratio);
             self.contraction = if n == 2 { ratio } else { (ratio * before).sqrt() };
             self.ratio = ratio;
+            if self.patience && n == 2 {
+                self.contraction = self.contraction.min(LARGEST_FIRST);
+            }
             if self.contraction >= 0.99 {
                 return if n > 2 && change < ROUNDING {
                     Verdict::Converged
@@ -77,7 +93,7 @@ impl Convergence {
         }
         let rest = self.most - 1 - n.min(self.most - 1);
         let expected = error * self.contraction.powi(rest as i32) / self.goal;
-        if self.foresight && n > 1 && expected >= 1.0 {
+        if self.foresight && n > 1 + u32::from(self.patience) && expected >= 1.0 {
             let exponent = -1.0 / f64::from(4 + rest);
             return Verdict::Failed {
                 factor: 0.8 * expected.clamp(1e-4, 20.0).powf(exponent),

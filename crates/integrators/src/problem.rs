@@ -56,6 +56,23 @@ pub trait Ode {
         0
     }
 
+    /// The number of components, at the end of y but before the quadratures, whose equation is 0 = fᵢ(t, y) instead of yᵢ' = fᵢ(t, y).
+    /// By default there are none. Methods that cannot solve such equations refuse the problem.
+    ///
+    /// What holds for f then holds for the equation. A start must fulfil the equations, those that follow from them by
+    /// differentiation included; the algebraic components themselves need be near their values only.
+    fn algebraic(&self) -> usize {
+        0
+    }
+
+    /// The index of a component of a differential-algebraic problem (Hairer, Wanner II, VII.1): 1, the default, for
+    /// components which the equations determine as they stand, 2 or 3 where they must be differentiated once or twice before.
+    ///
+    /// Errors of components of index k are measured after multiplication by the (k - 1)-th power of the step.
+    fn index(&self, _component: usize) -> u32 {
+        1
+    }
+
     /// The number of positions with which y begins if as many rates follow: `y[i]' = y[pairs + i]`, as for [`SecondOrder`]. By
     /// default 0, which is never wrong; more saves implicit methods most of their linear algebra.
     fn second_order_pairs(&self) -> usize {
@@ -122,6 +139,12 @@ impl<P: Ode + ?Sized> Ode for &mut P {
     fn quadratures(&self) -> usize {
         (**self).quadratures()
     }
+    fn algebraic(&self) -> usize {
+        (**self).algebraic()
+    }
+    fn index(&self, component: usize) -> u32 {
+        (**self).index(component)
+    }
     fn second_order_pairs(&self) -> usize {
         (**self).second_order_pairs()
     }
@@ -157,6 +180,12 @@ impl<P: Ode + ?Sized> Ode for Box<P> {
     }
     fn quadratures(&self) -> usize {
         (**self).quadratures()
+    }
+    fn algebraic(&self) -> usize {
+        (**self).algebraic()
+    }
+    fn index(&self, component: usize) -> u32 {
+        (**self).index(component)
     }
     fn second_order_pairs(&self) -> usize {
         (**self).second_order_pairs()

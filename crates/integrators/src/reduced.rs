@@ -14,22 +14,34 @@ pub(crate) struct Layout {
     pub pairs: usize,
     /// All but the quadratures at the end.
     pub active: usize,
+    /// Those at the end of the active ones whose equation is 0 = fᵢ.
+    pub algebraic: usize,
 }
 
 impl Layout {
     /// What the problem tells of itself.
     pub(crate) fn of<P: Ode + ?Sized>(problem: &P) -> Result<Self, SettingsError> {
         let (dim, pairs, quadratures) = (problem.dim(), problem.second_order_pairs(), problem.quadratures());
-        if pairs > dim || quadratures > dim || 2 * pairs > dim - quadratures {
+        let algebraic = problem.algebraic();
+        let left = dim
+            .checked_sub(quadratures)
+            .and_then(|left| left.checked_sub(algebraic));
+        if pairs > dim || left.is_none_or(|left| 2 * pairs > left) {
             return Err(SettingsError::Method(
-                "more pairs of positions and rates, and quadratures, than components",
+                "more pairs of positions and rates, algebraic components and quadratures than components",
             ));
         }
         Ok(Self {
             dim,
             pairs,
             active: dim - quadratures,
+            algebraic,
         })
+    }
+
+    /// The number of components with which y begins that are neither algebraic nor quadratures.
+    pub(crate) fn differential(&self) -> usize {
+        self.active - self.algebraic
     }
 }
 
@@ -38,7 +50,7 @@ impl Layout {
 /// λ x_q − h x_v = r_q, λ x − h J x = r in the other rows
 ///
 /// is solved by x_q = (r_q + h x_v) / λ and (λ − h J' − h² A / λ) x = r + h A r_q / λ, where A is what J has in the columns of the
-/// positions (added to those of their rates) and J' the rest of it.
+/// positions (added to those of their rates) and J' the rest of it. In algebraic rows λ x is missing.
 #[derive(Debug, Clone)]
 pub(crate) struct Reduced<T> {
     lambda: T,
@@ -62,13 +74,9 @@ where
         }
     }
 
-    pub(crate) fn factorise(
-        &mut self,
-        Layout { dim, pairs, active }: Layout,
-        jacobian: &[f64],
-        h: f64,
-    ) -> Result<(), Singular> {
-        let size = active - pairs;
+    pub(crate) fn factorise(&mut self, layout: Layout, jacobian: &[f64], h: f64) -> Result<(), Singular> {
+        let Layout { dim, pairs, active, .. } = layout;
+        let (size, differential) = (active - pairs, layout.differential() - pairs);
         let positions = self.inverse_lambda * (h * h);
         let rows = jacobian[pairs * dim..].chunks_exact(dim.max(1));
         for (i, (row, target)) in rows.zip(self.factors.chunks_exact_mut(size.max(1))).enumerate() {
@@ -78,7 +86,9 @@ where
             for (target, &entry) in target.iter_mut().zip(&row[..pairs]) {
                 *target += -(positions * entry);
             }
-            target[i] += self.lambda;
+            if i < differential {
+                target[i] += self.lambda;
+            }
         }
         factorise(&mut self.factors, &mut self.pivots)
     }
@@ -86,7 +96,7 @@ where
     /// Solves in place; `get` and `set` reach the components of the right-hand side.
     pub(crate) fn solve<R: ?Sized>(
         &mut self,
-        Layout { dim, pairs, active }: Layout,
+        Layout { dim, pairs, active, .. }: Layout,
         (jacobian, h): (&[f64], f64),
         r: &mut R,
         get: impl Fn(&R, usize) -> T,

@@ -1,8 +1,8 @@
 //! After the first step nothing is allocated. (A target of its own: it replaces the global allocator.)
 
 use linkdyn_integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Radau5, Rk4,
-    SecondOrder, Settings,
+    Adams, Bdf, Constrained, Corrector, Dop853, DormandPrince5, Equations, EvalError, Form, GeneralisedAlpha,
+    Integration, Method, Newmark, Ode, Radau5, Rk4, SecondOrder, Settings, Terms,
 };
 
 struct Pendulum;
@@ -17,6 +17,25 @@ impl Ode for Pendulum {
     }
     fn project(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, EvalError> {
         Ok(true)
+    }
+}
+
+/// The pendulum in Cartesian coordinates.
+struct OnACircle;
+
+impl Constrained for OnACircle {
+    fn positions(&self) -> usize {
+        2
+    }
+    fn constraints(&self) -> usize {
+        1
+    }
+    fn evaluate(&mut self, _t: f64, q: &[f64], v: &[f64], terms: &mut Terms) -> Result<(), EvalError> {
+        (terms.matrix[0], terms.matrix[3], terms.force[1]) = (1.0, 1.0, -1.0);
+        terms.constraint[0] = 0.5 * (q[0] * q[0] + q[1] * q[1] - 1.0);
+        terms.gradient.copy_from_slice(q);
+        terms.bias[0] = v[0] * v[0] + v[1] * v[1];
+        Ok(())
     }
 }
 
@@ -56,10 +75,20 @@ impl SecondOrder for Pendulum {
 }
 
 fn allocations<P: Ode, M: Method<P>>(problem: P, method: M) -> u64 {
-    let run = Integration::new(problem, method, 0.0, &[1.0, 0.0], Settings::default()).expect("good settings");
+    allocations_from(problem, method, &[1.0, 0.0])
+}
+
+fn allocations_with_constraints<M: Method<Equations<OnACircle>>>(form: Form, method: M) -> u64 {
+    let mut equations = Equations::new(OnACircle, form).with_projection();
+    let y = equations.start(0.0, &[1.0, 0.0], &[0.0, 0.0]).expect("consistent");
+    allocations_from(equations, method, &y)
+}
+
+fn allocations_from<P: Ode, M: Method<P>>(problem: P, method: M, y: &[f64]) -> u64 {
+    let run = Integration::new(problem, method, 0.0, y, Settings::default()).expect("good settings");
     let mut run = run.with_stops(&[3.0]).expect("finite");
     run.advance(100.0).expect("smooth");
-    let mut y = [0.0; 2];
+    let mut y = y.to_vec();
     let info = allocation_counter::measure(|| {
         for _ in 0..200 {
             run.advance(100.0).expect("smooth");
@@ -84,6 +113,29 @@ fn no_step_allocates() {
     assert_eq!(allocations(Pendulum, Radau5::default()), 0);
     assert_eq!(allocations(Pendulum, Bdf::default()), 0);
     assert_eq!(allocations(Pendulum, Radau5::fixed(0.01)), 0);
+}
+
+/// Nor do those of constrained problems.
+#[test]
+fn no_constrained_step_allocates() {
+    for form in [
+        Form::Explicit,
+        Form::Index1,
+        Form::Index2,
+        Form::Stabilised,
+        Form::Index3,
+    ] {
+        assert_eq!(allocations_with_constraints(form, Radau5::default()), 0, "{form:?}");
+    }
+    assert_eq!(allocations_with_constraints(Form::Explicit, Dop853::default()), 0);
+    assert_eq!(
+        allocations_with_constraints(Form::Index3, GeneralisedAlpha::default()),
+        0
+    );
+    assert_eq!(
+        allocations_with_constraints(Form::Index3, GeneralisedAlpha::fixed(0.01)),
+        0
+    );
 }
 
 /// Nor do events.

@@ -2,6 +2,7 @@
 
 mod coefficients;
 mod control;
+mod indices;
 mod polynomial;
 mod stages;
 mod systems;
@@ -11,6 +12,7 @@ use crate::newton::{Convergence, Verdict};
 use crate::reduced::Layout;
 use crate::{Counted, EvalError, Method, NotSettled, Ode, SettingsError, Step, Weights};
 use control::{Prediction, effort};
+use indices::Indices;
 use polynomial::Polynomial;
 use stages::Stages;
 use systems::Systems;
@@ -21,6 +23,10 @@ use systems::Systems;
 /// real and one complex system of equations; df/dy and the factors serve for as many steps as they can. If the problem
 /// [tells](Ode::second_order_pairs) that it begins with positions and their rates, these systems are as small as the number of rates.
 /// The derivative at the end of a step is that of the collocation polynomial, so that no further evaluation is needed there.
+///
+/// [Algebraic equations](Ode::algebraic) are solved at every stage, so that the end of each step fulfils them. The solution is of
+/// order 5 in components of [index](Ode::index) 1, of order 3 in algebraic ones of index 2, of order 3 and 2 in the rates and
+/// multipliers of a problem of index 3 (Hairer, Wanner II, VII.4).
 ///
 /// The error is estimated by a formula of order 3 while the solution is of order 5, so it is mostly far smaller than the
 /// tolerance: near tolerance^1.25. (The subroutine RADAU5 of the book takes 0.1 tolerance^(2/3) for the tolerance it is given.)
@@ -36,6 +42,7 @@ pub struct Radau5 {
     layout: Layout,
     stages: Stages,
     systems: Systems,
+    indices: Indices,
     polynomial: Polynomial,
     jacobian: Vec<f64>,
     known: Known,
@@ -113,6 +120,7 @@ impl Default for Radau5 {
             layout,
             stages,
             systems: Systems::new(layout, real, complex),
+            indices: Indices::default(),
             polynomial: Polynomial::new(nodes, 0),
             jacobian: Vec::new(),
             known: Known::Nothing,
@@ -223,6 +231,9 @@ impl Radau5 {
             ),
             Some(_) => Convergence::new(MOST_ITERATIONS_FIXED, rounding, false, 1.0),
         };
+        if self.indices.is_higher() {
+            convergence = convergence.with_patience();
+        }
         if !self.systems.fit(step.h) {
             problem.count_factorisations(2);
             if self.systems.factorise(&self.jacobian, step.h).is_err() {
@@ -236,7 +247,8 @@ impl Radau5 {
             if let Some(stage) = self.stages.evaluate(problem, step)? {
                 return Ok(Solution::NotFinite(stage));
             }
-            let change = self.stages.iterate(&mut self.systems, &self.jacobian, step, weights);
+            let measure = (weights, &mut self.indices);
+            let change = self.stages.iterate(&mut self.systems, &self.jacobian, step, measure);
             match convergence.judge(change) {
                 Verdict::GoOn => {}
                 Verdict::Converged => return Ok(Solution::Found(convergence)),
@@ -253,6 +265,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
 
     fn prepare(&mut self, problem: &P) -> Result<(), SettingsError> {
         let layout = Layout::of(problem)?;
+        self.indices = Indices::new(problem)?;
         if self.reuse.is_some_and(|part| !(0.0..1.0).contains(&part)) {
             return Err(SettingsError::Method("needed: 0 <= part of reuse < 1"));
         }
@@ -336,7 +349,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
         }
         let (systems, jacobian) = (&mut self.systems, &self.jacobian);
         self.stages.estimate(systems, jacobian, step.h, &self.f_old, error);
-        let norm = weights.norm(step.y, y_new, error);
+        let norm = weights.norm(step.y, y_new, self.indices.scale(step.h, [error])[0]);
         if norm < 1.0 || ordinary {
             return Ok(norm);
         }
@@ -350,7 +363,7 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
             _ => return Ok(norm),
         }
         self.stages.estimate(systems, jacobian, step.h, &self.f_new, error);
-        Ok(weights.norm(step.y, y_new, error))
+        Ok(weights.norm(step.y, y_new, self.indices.scale(step.h, [error])[0]))
     }
 
     fn close(
@@ -421,5 +434,9 @@ impl<P: Ode + ?Sized> Method<P> for Radau5 {
 
     fn fixed_step(&self) -> Option<f64> {
         self.fixed
+    }
+
+    fn solves_algebraic(&self) -> bool {
+        true
     }
 }

@@ -1,6 +1,7 @@
 //! The stages of a step and one Newton iteration on them.
 
 use super::coefficients::Coefficients;
+use super::indices::Indices;
 use super::polynomial::Polynomial;
 use super::systems::Systems;
 use crate::reduced::Layout;
@@ -72,7 +73,7 @@ impl Stages {
         systems: &mut Systems,
         jacobian: &[f64],
         Step { h, y, .. }: Step<'_>,
-        weights: &Weights,
+        (weights, indices): (&Weights, &mut Indices),
     ) -> f64 {
         let Coefficients {
             t,
@@ -82,18 +83,21 @@ impl Stages {
             ..
         } = &self.coefficients;
         transform(t_inverse, &self.f, &mut self.change);
-        let active = self.layout.active;
-        for i in 0..active {
+        let (active, differential) = (self.layout.active, self.layout.differential());
+        for i in 0..differential {
             let [w1, w2, w3] = [self.w[0][i], self.w[1][i], self.w[2][i]];
             self.change[0][i] = h * self.change[0][i] - real * w1;
             self.change[1][i] = h * self.change[1][i] - complex.re * w2 + complex.im * w3;
             self.change[2][i] = h * self.change[2][i] - complex.im * w2 - complex.re * w3;
         }
-        self.change.iter_mut().for_each(|change| change[active..].fill(0.0));
+        for change in &mut self.change {
+            change[differential..active].iter_mut().for_each(|f| *f *= h);
+            change[active..].fill(0.0);
+        }
         let [first, second, third] = &mut self.change;
         systems.solve_real(jacobian, first);
         systems.solve_complex(jacobian, (second, third));
-        let squares = weights.mean_squares(y, y, [first, second, third]);
+        let squares = weights.mean_squares(y, y, indices.scale(h, [first, second, third]));
         for (w, change) in self.w.iter_mut().zip(&self.change) {
             w.iter_mut().zip(change).for_each(|(w, change)| *w += change);
         }
@@ -125,13 +129,15 @@ impl Stages {
         }
     }
 
-    /// Writes the estimated error, with `f` in place of f(t, y): (γ − h J) error = h f + Σ eᵢ zᵢ.
+    /// Writes the estimated error, with `f` in place of f(t, y): (γ − h J) error = h f + Σ eᵢ zᵢ. In algebraic rows γ is missing
+    /// and the right-hand side zero: the estimate is a state near y that keeps to the equations, linearised.
     pub(crate) fn estimate(&self, systems: &mut Systems, jacobian: &[f64], h: f64, f: &[f64], error: &mut [f64]) {
         let Layout { dim, active, .. } = self.layout;
         let Coefficients { e, real, .. } = &self.coefficients;
         for (i, error) in error.iter_mut().enumerate() {
             *error = h * f[i] + (e[0] * self.z[0][i] + e[1] * self.z[1][i] + e[2] * self.z[2][i]);
         }
+        error[self.layout.differential()..active].fill(0.0);
         systems.solve_real(jacobian, error);
         let (controlled, quadratures) = error.split_at_mut(active);
         for (i, error) in quadratures.iter_mut().enumerate() {

@@ -2,6 +2,8 @@
 
 mod any_numbers;
 mod bdf;
+mod benchmark_01_andrews_squeezer;
+mod benchmark_04_pendulum_index3;
 mod benchmark_05_standard_odes;
 mod convergence;
 mod counters;
