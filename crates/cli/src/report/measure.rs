@@ -58,6 +58,19 @@ pub struct Measured {
     pub halt: Option<Halt>,
 }
 
+impl Measured {
+    /// The run, if it came to its end.
+    ///
+    /// # Errors
+    /// Why it did not.
+    pub fn whole(self) -> Result<Self, Halt> {
+        match self.halt {
+            None => Ok(self),
+            Some(halt) => Err(halt),
+        }
+    }
+}
+
 /// Why a run did not come to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Halt {

@@ -127,7 +127,7 @@ pub fn sweeps(
                     }
                     Ok(stiff) => {
                         let plan = plan(method, tolerance(stiff));
-                        match measure(stiff, &plan, (until, until / ROWS), &limit.part(share), &mut *seen) {
+                        match measure(stiff, &plan, (until, until / ROWS), &limit.part(share), &mut *seen).whole() {
                             Ok(run) => {
                                 let work = Work::new(&run, None);
                                 path.get_or_insert(run.path);
@@ -163,7 +163,7 @@ fn largest_step(
     };
     let mut attempt = |step: f64| -> Result<Work, Halt> {
         let grid = (until, until / ROWS);
-        let run = measure(prepared, &plan(method, step), grid, limit, &mut *seen)?;
+        let run = measure(prepared, &plan(method, step), grid, limit, &mut *seen).whole()?;
         let error = error(&run.path, path);
         // NaN does not pass.
         match error <= LOOSE {
@@ -236,6 +236,7 @@ mod tests {
             t: i as f64,
             q: vec![5.0, 5.0 + x],
             v: vec![x],
+            forces: Vec::new(),
         };
         values.iter().enumerate().map(point).collect()
     }

@@ -130,7 +130,8 @@ fn orders_of_radau() {
 
 #[test]
 fn orders_of_generalised_alpha() {
-    let variants: [(&str, fn(f64) -> GeneralisedAlpha, bool); 5] = [
+    type Fixed = fn(f64) -> GeneralisedAlpha;
+    let variants: [(&str, Fixed, bool); 5] = [
         ("radius 0.8", GeneralisedAlpha::fixed, false),
         ("radius 0.8, projected", GeneralisedAlpha::fixed, true),
         ("radius 0", |h| GeneralisedAlpha::fixed(h).with_radius(0.0), false),
