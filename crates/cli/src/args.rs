@@ -49,12 +49,12 @@ pub struct RunArgs {
     /// Formulation of the equations of motion
     #[arg(long, value_enum, default_value_t = FormulationArg::Recursive)]
     pub formulation: FormulationArg,
-    /// Integration method: adams (variable order and step), dop853, dopri5, radau5 (for stiff scenes); with fixed
-    /// step rk4, newmark [default: radau5 with clearance or a flexible link, else adams]
+    /// Integration method: auto (adams or radau5, as the run finds them cheaper), adams (variable order and step), dop853, dopri5,
+    /// radau5 and bdf (for stiff scenes); with fixed step rk4, newmark [default: auto]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12, radau5
-    /// 1e-9, with clearance 1e-6 of it]
+    /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12; radau5,
+    /// bdf, and auto with a flexible link 1e-9; with clearance 1e-6 of it]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub rtol: Option<f64>,
     /// Absolute tolerance of adaptive methods [default: that of --rtol]

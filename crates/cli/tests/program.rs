@@ -114,7 +114,7 @@ fn a_run_writes_what_the_format_asks_for() {
     );
     let manifest: serde_json::Value = serde_json::from_str(&text(&out.join("run.json"))).expect("JSON");
     assert_eq!(manifest["status"], "complete");
-    assert_eq!(manifest["integration"]["method"], "adams");
+    assert_eq!(manifest["integration"]["method"], "auto");
     assert_eq!(manifest["scene"]["linkage"]["links"][0][0], "1,1");
     assert!(manifest["counters"]["evaluations"].as_u64().is_some_and(|n| n > 10));
     for picture in ["coordinates", "joint-loads"] {

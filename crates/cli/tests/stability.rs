@@ -36,7 +36,7 @@ fn stability_tells_of_every_method_whatever_the_budget() {
 
     let sweeps = rows("sweeps");
     for quantity in ["contact stiffness", "bristle stiffness", "mass ratio"] {
-        for method in ["adams", "dop853", "dopri5", "radau5", "rk4", "newmark"] {
+        for method in ["auto", "adams", "dop853", "dopri5", "radau5", "rk4", "newmark"] {
             let same = |row: &&serde_json::Value| row["quantity"] == quantity && row["method"] == method;
             assert_eq!(sweeps.iter().filter(same).count(), 7, "{quantity} {method}");
         }

@@ -2,6 +2,7 @@
 
 mod adams;
 mod alpha;
+mod auto;
 mod bdf;
 mod constrained;
 mod control;
@@ -27,6 +28,7 @@ mod weights;
 
 pub use adams::Adams;
 pub use alpha::GeneralisedAlpha;
+pub use auto::Auto;
 pub use bdf::Bdf;
 pub use constrained::{Constrained, Equations, Form, Place, SingularConstraints, Terms};
 pub use error::IntegrationError;

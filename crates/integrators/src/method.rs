@@ -63,6 +63,11 @@ impl<'a, P: Ode + ?Sized> Counted<'a, P> {
         self.statistics.factorisations += matrices;
     }
 
+    /// What has been counted.
+    pub(crate) fn statistics(&self) -> &Statistics {
+        self.statistics
+    }
+
     /// The problem, to ask for its structure.
     pub(crate) fn structure(&self) -> &P {
         self.problem

@@ -1,7 +1,7 @@
 //! After the first step nothing is allocated. (A target of its own: it replaces the global allocator.)
 
 use linkdyn_integrators::{
-    Adams, Bdf, Constrained, Corrector, Dop853, DormandPrince5, Equations, EvalError, Form, GeneralisedAlpha,
+    Adams, Auto, Bdf, Constrained, Corrector, Dop853, DormandPrince5, Equations, EvalError, Form, GeneralisedAlpha,
     Integration, Method, Newmark, Ode, Radau5, Rk4, SecondOrder, Settings, Terms,
 };
 
@@ -112,6 +112,7 @@ fn no_step_allocates() {
     assert_eq!(allocations(Pendulum, Adams::default()), 0);
     assert_eq!(allocations(Pendulum, Radau5::default()), 0);
     assert_eq!(allocations(Pendulum, Bdf::default()), 0);
+    assert_eq!(allocations(Pendulum, Auto::default()), 0);
     assert_eq!(allocations(Pendulum, Radau5::fixed(0.01)), 0);
 }
 
@@ -148,5 +149,6 @@ fn no_event_allocates() {
     assert_eq!(allocations(Struck, Adams::default()), 0);
     assert_eq!(allocations(Struck, Radau5::default()), 0);
     assert_eq!(allocations(Struck, Bdf::default()), 0);
+    assert_eq!(allocations(Struck, Auto::default()), 0);
     assert_eq!(allocations(Struck, Radau5::fixed(0.01)), 0);
 }

@@ -1,7 +1,7 @@
 //! The integration methods by name, and the tolerances or steps that go with them.
 
 use linkdyn_mechanisms::integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Settings,
+    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Settings,
 };
 use linkdyn_mechanisms::{Simulation, Switching};
 use serde::Serialize;
@@ -27,7 +27,7 @@ pub struct Plan {
 }
 
 /// Methods with error control.
-pub(crate) const ADAPTIVE: [&str; 5] = ["adams", "dop853", "dopri5", "radau5", "bdf"];
+pub(crate) const ADAPTIVE: [&str; 6] = ["auto", "adams", "dop853", "dopri5", "radau5", "bdf"];
 /// Methods of fixed step.
 pub(crate) const FIXED: [&str; 2] = ["rk4", "newmark"];
 
@@ -58,9 +58,7 @@ impl Plan {
     pub fn new(args: &RunArgs) -> Result<Self, CliError> {
         let method = match (&args.method, args.as_published) {
             (None, true) => "rk4",
-            // Contacts and elastic links are stiff.
-            (None, false) if args.variant.clearance.is_some() || args.variant.flexible.is_some() => "radau5",
-            (None, false) => "adams",
+            (None, false) => "auto",
             (Some(name), false) => name,
             (Some(_), true) => {
                 let message = "`--method` does not go with `--as-published`, which is rk4";
@@ -77,7 +75,7 @@ impl Plan {
         if fixed && (args.rtol.is_some() || args.atol.is_some()) {
             return misplaced(
                 "--rtol/--atol",
-                "give its `--step`, or take an adaptive method: adams, dop853, dopri5, radau5, bdf",
+                "give its `--step`, or take an adaptive method: auto, adams, dop853, dopri5, radau5, bdf",
             );
         }
         if !fixed && args.step.is_some() {
@@ -95,7 +93,10 @@ impl Plan {
             .map(|_| args.variant.clearance_size.unwrap_or(CLEARANCE));
         let (usual, loosest) = match clearance {
             Some(size) => (CONTACT_TOLERANCE * size, CONTACT_LOOSEST * size),
-            None if ["radau5", "bdf"].contains(&method) => (STIFF_TOLERANCE, LOOSEST),
+            // Elastic links are stiff.
+            None if ["radau5", "bdf"].contains(&method) || (method == "auto" && args.variant.flexible.is_some()) => {
+                (STIFF_TOLERANCE, LOOSEST)
+            }
             None => (TOLERANCE, LOOSEST),
         };
         let rtol = args.rtol.unwrap_or(usual);
@@ -127,6 +128,7 @@ impl Plan {
     pub fn method(&self) -> Box<dyn Method<Simulation>> {
         let step = self.step.unwrap_or(STEP);
         match self.method.as_str() {
+            "auto" => Box::new(Auto::default()),
             "dop853" => Box::new(Dop853::default()),
             "dopri5" => Box::new(DormandPrince5::default()),
             "radau5" => Box::new(Radau5::default()),

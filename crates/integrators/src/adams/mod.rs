@@ -219,6 +219,25 @@ impl Adams {
         }
     }
 
+    /// f at the end of the attempt: at the prediction before it is closed, at the state reached afterwards.
+    pub(crate) fn rate_at_end(&self) -> &[f64] {
+        &self.f_new[..self.dim]
+    }
+
+    /// How much f has changed from the prediction, where it was this, to `y_new`, by how much the state has: both in tolerances.
+    pub(crate) fn sensitivity(&self, at_prediction: &[f64], y_new: &[f64]) -> f64 {
+        let scales = self.blocks_new.iter().map(|block| block.inverse_scale);
+        let states = y_new.chunks(LANES).zip(self.predicted.chunks(LANES));
+        let rates = self.f_new.chunks(LANES).zip(at_prediction.chunks(LANES));
+        let (mut change, mut cause) = (Lanes::ZERO, Lanes::ZERO);
+        for ((scale, (y, predicted)), (f, before)) in scales.zip(states).zip(rates) {
+            change += (scale * (Lanes::load(f) - Lanes::load(before))).squared();
+            cause += (scale * (Lanes::load(y) - Lanes::load(predicted))).squared();
+        }
+        let (change, cause) = (change.sum(), cause.sum());
+        if cause > 0.0 { (change / cause).sqrt() } else { 0.0 }
+    }
+
     /// Forgets all but the newest point.
     fn forget(&mut self) {
         (self.next_k, self.depth) = (1, 1);

@@ -167,6 +167,11 @@ impl Radau5 {
         self
     }
 
+    /// df/dy as it is used, row after row.
+    pub(crate) fn jacobian(&self) -> &[f64] {
+        &self.jacobian
+    }
+
     /// Finds df/dy at the start of the step.
     fn find_jacobian<P: Ode + ?Sized>(
         &mut self,

@@ -1,6 +1,8 @@
 //! Whatever numbers are given: an answer or a typed error, never a panic, in a bounded number of steps.
 
-use linkdyn_integrators::{Adams, Bdf, Dop853, DormandPrince5, Integration, Method, Progress, Radau5, Rk4, Settings};
+use linkdyn_integrators::{
+    Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Progress, Radau5, Rk4, Settings,
+};
 use proptest::prelude::*;
 
 use crate::problems::{Counting, Kink};
@@ -54,6 +56,7 @@ proptest! {
         run(Adams::default(), t, y0, settings);
         run(Radau5::default(), t, y0, settings);
         run(Bdf::default(), t, y0, settings);
+        run(Auto::default(), t, y0, settings);
         run(Radau5::fixed(settings[2]), t, y0, settings);
     }
 }

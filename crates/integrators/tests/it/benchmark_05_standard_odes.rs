@@ -4,9 +4,9 @@ use linkdyn_integrators::{Bdf, EvalError, Method, Radau5, Settings, Statistics};
 
 use crate::problems::{Function, solve};
 
-type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), EvalError>;
+pub type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), EvalError>;
 
-struct Standard {
+pub struct Standard {
     rhs: Rhs,
     start: &'static [f64],
     end: f64,
@@ -14,7 +14,7 @@ struct Standard {
 }
 
 /// Eight reactions with light.
-const HIRES: Standard = Standard {
+pub const HIRES: Standard = Standard {
     rhs: |_, y, dy| {
         let reaction = 280.0 * y[5] * y[7];
         dy[0] = -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007;
@@ -41,7 +41,7 @@ const HIRES: Standard = Standard {
     ],
 };
 
-const VAN_DER_POL: Standard = Standard {
+pub const VAN_DER_POL: Standard = Standard {
     rhs: |_, y, dy| {
         (dy[0], dy[1]) = (y[1], 1000.0 * (1.0 - y[0] * y[0]) * y[1] - y[0]);
         Ok(())
@@ -51,7 +51,7 @@ const VAN_DER_POL: Standard = Standard {
     exact: &[1.706167732170469, -0.0008928097010248125],
 };
 
-const ROBERTSON: Standard = Standard {
+pub const ROBERTSON: Standard = Standard {
     rhs: |_, y, dy| {
         (dy[0], dy[2]) = (-0.04 * y[0] + 1e4 * y[1] * y[2], 3e7 * y[1] * y[1]);
         dy[1] = -dy[0] - dy[2];
@@ -63,7 +63,12 @@ const ROBERTSON: Standard = Standard {
 };
 
 /// Digits of the worst component at the end, relative to its value.
-fn digits(problem: &Standard, method: impl Method<Function<Rhs>>, relative: f64, absolute: f64) -> (f64, Statistics) {
+pub fn digits(
+    problem: &Standard,
+    method: impl Method<Function<Rhs>>,
+    relative: f64,
+    absolute: f64,
+) -> (f64, Statistics) {
     let settings = Settings {
         first_step: Some(1e-6),
         ..Settings::tolerances(relative, absolute)

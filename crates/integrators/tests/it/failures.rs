@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use linkdyn_integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark,
+    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark,
     NotSettled, Ode, Progress, Radau5, Rk4, Settings,
 };
 
@@ -36,7 +36,7 @@ fn failure<P: Ode, M: Method<P>>(
 }
 
 /// The same with each adaptive method.
-fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 5] {
+fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 6] {
     let dim = y0.len();
     [
         failure(
@@ -51,6 +51,7 @@ fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 5] {
         failure(Function(dim, rhs), Adams::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Radau5::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Bdf::default(), 0.0, y0, end, Settings::default()),
+        failure(Function(dim, rhs), Auto::default(), 0.0, y0, end, Settings::default()),
     ]
 }
 

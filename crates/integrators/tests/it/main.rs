@@ -1,6 +1,7 @@
 //! Public behaviour of the crate.
 
 mod any_numbers;
+mod auto;
 mod bdf;
 mod benchmark_01_andrews_squeezer;
 mod benchmark_04_pendulum_index3;

@@ -1,7 +1,7 @@
 //! Output must not change the run.
 
 use linkdyn_integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress,
+    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress,
     Radau5, Rk4, Settings,
 };
 
@@ -45,11 +45,13 @@ fn the_path_is_the_same_to_the_last_bit() {
     check(|| Kink, Adams::default, &Kink::START);
     check(|| Kink, Radau5::default, &Kink::START);
     check(|| Kink, Bdf::default, &Kink::START);
+    check(|| Kink, Auto::default, &Kink::START);
     // With refused steps.
     check(|| Pleiades, Dop853::default, &Pleiades::START);
     check(|| Pleiades, Adams::default, &Pleiades::START);
     check(|| Pleiades, Radau5::default, &Pleiades::START);
     check(|| Pleiades, Bdf::default, &Pleiades::START);
+    check(|| Pleiades, Auto::default, &Pleiades::START);
 }
 
 #[test]
@@ -80,6 +82,7 @@ fn interpolation_is_continuous_from_step_to_step() {
     check(Adams::default());
     check(Radau5::default());
     check(Bdf::default());
+    check(Auto::default());
 }
 
 #[test]

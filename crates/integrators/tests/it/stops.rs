@@ -1,8 +1,8 @@
 //! Stops, projection, and going on from another state.
 
 use linkdyn_integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Progress, Radau5, Rk4,
-    SecondOrder, Settings,
+    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Progress,
+    Radau5, Rk4, SecondOrder, Settings,
 };
 
 use crate::problems::{Damped, Function, distance, finish};
@@ -65,6 +65,7 @@ fn stops_are_hit_exactly() {
     check(Adams::default(), 1e-6);
     check(Radau5::default(), 1e-6);
     check(Bdf::default(), 1e-6);
+    check(Auto::default(), 1e-6);
     check(Radau5::fixed(0.05), 1e-6);
 }
 
@@ -141,6 +142,7 @@ fn stops_of_all_kinds() {
     check(Adams::default, 1e-8, 800);
     check(Radau5::default, 1e-8, 2000);
     check(Bdf::default, 1e-7, 2000);
+    check(Auto::default, 1e-7, 2000);
 }
 
 /// t + h may round to beyond the stop; f must not be asked for there.
@@ -234,6 +236,7 @@ fn a_problem_switched_at_a_stop() {
     check(Adams::default());
     check(Radau5::default());
     check(Bdf::default());
+    check(Auto::default());
 }
 
 /// A point on the unit circle whose right-hand side drifts off it.
@@ -276,6 +279,7 @@ fn projection_keeps_the_invariant_at_every_step() {
     check(Adams::default());
     check(Radau5::default());
     check(Bdf::default());
+    check(Auto::default());
 }
 
 #[test]
@@ -300,11 +304,12 @@ fn problems_and_methods_as_trait_objects() {
     let boxed: Box<dyn Ode> = Box::new(Damped);
     let mut run = Integration::new(boxed, Adams::default(), 0.0, &Damped::START, Settings::default()).expect("good");
     finish(&mut run, 1.0);
-    let methods: [Box<dyn Method<Damped>>; 5] = [
+    let methods: [Box<dyn Method<Damped>>; 6] = [
         Box::new(Dop853::default()),
         Box::new(Adams::default()),
         Box::new(Radau5::default()),
         Box::new(Bdf::default()),
+        Box::new(Auto::default()),
         Box::new(Rk4::new(0.01)),
     ];
     for method in methods {

@@ -1,6 +1,6 @@
 //! What a tolerance buys.
 
-use linkdyn_integrators::{Adams, Bdf, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Settings};
+use linkdyn_integrators::{Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Settings};
 
 use crate::problems::{Damped, Function, Kink, Pleiades, distance, finish, solve};
 
@@ -40,6 +40,7 @@ fn error_follows_tolerance() {
     all_respond(Adams::default);
     all_respond(Radau5::default);
     all_respond(Bdf::default);
+    all_respond(Auto::default);
 }
 
 #[test]
@@ -125,4 +126,5 @@ fn backward_and_back() {
     there_and_back(Adams::default());
     there_and_back(Radau5::default());
     there_and_back(Bdf::default());
+    there_and_back(Auto::default());
 }

@@ -7,8 +7,8 @@ mod searching;
 mod state;
 
 use linkdyn_integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark, Ode,
-    Progress, Radau5, Rk4, SecondOrder, Settings,
+    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark,
+    Ode, Progress, Radau5, Rk4, SecondOrder, Settings,
 };
 
 type Answer = Result<(), EvalError>;

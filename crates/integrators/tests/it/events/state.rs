@@ -129,6 +129,7 @@ fn steps_without_events_are_the_same() {
     check(Adams::default);
     check(Radau5::default);
     check(Bdf::default);
+    check(Auto::default);
 }
 
 /// All calls are counted, and every attempt is accounted for.
@@ -166,6 +167,7 @@ fn counters() {
     check(Adams::default(), 0);
     check(Radau5::default(), 0);
     check(Bdf::default(), 0);
+    check(Auto::default(), 0);
 }
 
 /// The state is on the invariants when it is changed.
@@ -208,4 +210,5 @@ fn the_state_at_an_event_is_projected() {
     check(Adams::default(), 1e-5);
     check(Radau5::default(), 1e-5);
     check(Bdf::default(), 1e-5);
+    check(Auto::default(), 1e-5);
 }
