@@ -86,6 +86,9 @@ enum Found {
     Nothing(f64),
 }
 
+/// Shortest step, of the time.
+const LEAST_STEP: f64 = 8.0 * f64::EPSILON;
+
 /// Why an attempt was thrown away.
 enum Refusal {
     Inaccurate { error: f64 },
@@ -370,8 +373,13 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
     /// Signed length and end of the next attempt: the wanted step, cut or stretched by at most 1 % to end on `goal`; a fixed or longest
     /// step by 1e-9 only, so that rounding of t does not leave a splinter.
     fn cut(&self, goal: f64) -> (f64, f64) {
-        let wanted = self.h.unwrap_or(f64::INFINITY);
         let longest = self.method.fixed_step().unwrap_or(f64::INFINITY).min(self.max_step);
+        // Never so short that t would not change: what makes steps so short is then met, and told, by a real attempt.
+        let wanted = self
+            .h
+            .unwrap_or(f64::INFINITY)
+            .max(LEAST_STEP * self.t.abs())
+            .min(longest);
         if (goal - self.t).abs() <= (1.01 * wanted).min((1.0 + 1e-9) * longest) {
             (self.length_to(goal), goal)
         } else {
@@ -464,8 +472,7 @@ impl<P: Ode, M: Method<P>> Integration<P, M> {
     fn check_refusal(&mut self, h: f64, refused: Refusal) -> Result<Refusal, IntegrationError> {
         let (time, step) = (self.t, h);
         let next = self.h.unwrap_or(0.0);
-        let stuck =
-            self.method.fixed_step().is_some() || next <= 8.0 * f64::EPSILON * time.abs() || next < f64::MIN_POSITIVE;
+        let stuck = self.method.fixed_step().is_some() || next <= LEAST_STEP * time.abs() || next < f64::MIN_POSITIVE;
         if let Refusal::Evaluation(EvalError::Retry(_)) = &refused {
             self.statistics.retries += 1;
         }

@@ -160,6 +160,26 @@ fn not_finite_at_the_start() {
 #[error("y = {0} is outside the domain")]
 struct Outside(f64);
 
+/// Even where the step wanted is lost in rounding of t.
+#[test]
+fn a_cause_is_named_however_short_the_step() {
+    let rhs: Rhs = |t, _, dy| {
+        dy[0] = 1.0;
+        if t > 1e6 {
+            Err(EvalError::Retry(Outside(t).into()))
+        } else {
+            Ok(())
+        }
+    };
+    let settings = Settings {
+        first_step: Some(1e-12),
+        ..Settings::default()
+    };
+    let (error, reached) = failure(Function(1, rhs), Dop853::default(), 1e6, &[1.0], 2e6, settings);
+    assert_eq!(reached, 1e6);
+    assert!(error.source().is_some_and(|source| source.is::<Outside>()), "{error}");
+}
+
 /// y' = −√y from 1: reaches 0 at t = 2, where the domain ends.
 fn root(_: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
     if y[0] < 0.0 {
