@@ -32,6 +32,8 @@ const LEAST_GROWTH: f64 = 1.1;
 pub struct Adams {
     dim: usize,
     inverse_dim: f64,
+    /// Errors are taken for so many times what they are.
+    strictness: f64,
     /// Order k of the predictor in this attempt, and in the next.
     k: usize,
     next_k: usize,
@@ -81,6 +83,7 @@ impl Default for Adams {
         Self {
             dim: 0,
             inverse_dim: 1.0,
+            strictness: 1.0,
             k: 1,
             next_k: 1,
             depth: 1,
@@ -188,7 +191,7 @@ impl Adams {
 
     /// Squared error of a step of order k, from the mean square of its Φₖ: h (gₖ − gₖ₋₁) Φₖ.
     fn squared_error(&self, h: f64, k: usize, mean_square: f64) -> f64 {
-        let miss = h * (self.coefficients.g[k] - self.coefficients.g[k - 1]);
+        let miss = self.strictness * h * (self.coefficients.g[k] - self.coefficients.g[k - 1]);
         miss * miss * mean_square
     }
 
@@ -217,6 +220,11 @@ impl Adams {
             2.. if higher < own => (k + 1, higher),
             _ => (k, own),
         }
+    }
+
+    /// Makes steps for tolerances smaller by this factor than those that are given.
+    pub(crate) fn set_strictness(&mut self, factor: f64) {
+        self.strictness = factor;
     }
 
     /// f at the end of the attempt: at the prediction before it is closed, at the state reached afterwards.
