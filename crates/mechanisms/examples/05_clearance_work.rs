@@ -6,7 +6,7 @@
 
 use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsup, rsup};
 use linkdyn_mechanisms::dynamics::Baumgarte;
-use linkdyn_mechanisms::integrators::{Dop853, Integration, Method, Radau5, Rk4};
+use linkdyn_mechanisms::integrators::{Auto, Dop853, Integration, Method, Radau5, Rk4};
 use linkdyn_mechanisms::{Mechanism, Seen, Simulation, State, Switching, Tally, run_watched};
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -151,6 +151,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             run.energy_error,
         );
     };
+    for tolerance in [1e-8, 1e-9, 1e-10, 1e-11, 1e-12] {
+        let method = Auto::default();
+        show("auto", tolerance, &case.run(method, tolerance, Switching::Located)?);
+    }
     for tolerance in [1e-8, 3e-9, 1e-9, 1e-10, 1e-11, 1e-12] {
         let method = Radau5::default();
         show("radau5", tolerance, &case.run(method, tolerance, Switching::Located)?);
