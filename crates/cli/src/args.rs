@@ -50,11 +50,11 @@ pub struct RunArgs {
     #[arg(long, value_enum, default_value_t = FormulationArg::Recursive)]
     pub formulation: FormulationArg,
     /// Integration method: auto (adams or radau5, as the run finds them cheaper), adams (variable order and step), dop853, dopri5,
-    /// radau5 and bdf (for stiff scenes); with fixed step rk4, newmark [default: auto]
+    /// radau5, bdf and rodas (for stiff scenes); with fixed step rk4, newmark [default: auto]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
     /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12; radau5,
-    /// bdf, and auto with a flexible link 1e-9; with clearance 1e-6 of it]
+    /// bdf, rodas, and auto with a flexible link 1e-9; with clearance 1e-6 of it]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub rtol: Option<f64>,
     /// Absolute tolerance of adaptive methods [default: that of --rtol]

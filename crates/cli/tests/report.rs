@@ -62,7 +62,7 @@ fn a_report_has_certified_errors_that_fall_with_the_tolerance() {
         number.and_then(serde_json::Value::as_f64).expect("an error or a bound")
     };
     assert!(rows.iter().all(|row| row["outcome"] == "done"), "{rows:#?}");
-    for method in ["auto", "adams", "dop853", "dopri5", "radau5", "bdf"] {
+    for method in ["auto", "adams", "dop853", "dopri5", "radau5", "bdf", "rodas"] {
         for kind in ["positions", "speeds", "forces"] {
             assert!(error(method, 1e-10, kind) < 0.1 * error(method, 1e-6, kind), "{method}");
             assert!(error(method, 1e-12, kind) >= accuracy(kind), "{method}");

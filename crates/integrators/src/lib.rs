@@ -20,6 +20,7 @@ mod problem;
 mod radau;
 mod reduced;
 mod root;
+mod rosenbrock;
 mod runge_kutta;
 mod settings;
 mod statistics;
@@ -37,6 +38,7 @@ pub use method::{Counted, Method, Step};
 pub use newmark::{Corrector, Newmark, NotSettled};
 pub use problem::{EvalError, Ode, SecondOrder, Source};
 pub use radau::Radau5;
+pub use rosenbrock::Rodas;
 pub use runge_kutta::{
     ClassicalTableau, Coefficients, Dop853, Dop853Tableau, DormandPrince5, DormandPrince5Tableau, Embedded, Rk4,
     RungeKutta, Tableau,

@@ -2,7 +2,7 @@
 
 use linkdyn_integrators::{
     Adams, Auto, Bdf, Constrained, Corrector, Dop853, DormandPrince5, Equations, EvalError, Form, GeneralisedAlpha,
-    Integration, Method, Newmark, Ode, Radau5, Rk4, SecondOrder, Settings, Terms,
+    Integration, Method, Newmark, Ode, Radau5, Rk4, Rodas, SecondOrder, Settings, Terms,
 };
 
 struct Pendulum;
@@ -113,6 +113,7 @@ fn no_step_allocates() {
     assert_eq!(allocations(Pendulum, Radau5::default()), 0);
     assert_eq!(allocations(Pendulum, Bdf::default()), 0);
     assert_eq!(allocations(Pendulum, Auto::default()), 0);
+    assert_eq!(allocations(Pendulum, Rodas::default()), 0);
     assert_eq!(allocations(Pendulum, Radau5::fixed(0.01)), 0);
 }
 
@@ -150,5 +151,6 @@ fn no_event_allocates() {
     assert_eq!(allocations(Struck, Radau5::default()), 0);
     assert_eq!(allocations(Struck, Bdf::default()), 0);
     assert_eq!(allocations(Struck, Auto::default()), 0);
+    assert_eq!(allocations(Struck, Rodas::default()), 0);
     assert_eq!(allocations(Struck, Radau5::fixed(0.01)), 0);
 }

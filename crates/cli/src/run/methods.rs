@@ -1,7 +1,7 @@
 //! The integration methods by name, and the tolerances or steps that go with them.
 
 use linkdyn_mechanisms::integrators::{
-    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Settings,
+    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Rodas, Settings,
 };
 use linkdyn_mechanisms::{Simulation, Switching};
 use serde::Serialize;
@@ -27,7 +27,7 @@ pub struct Plan {
 }
 
 /// Methods with error control.
-pub(crate) const ADAPTIVE: [&str; 6] = ["auto", "adams", "dop853", "dopri5", "radau5", "bdf"];
+pub(crate) const ADAPTIVE: [&str; 7] = ["auto", "adams", "dop853", "dopri5", "radau5", "bdf", "rodas"];
 /// Methods of fixed step.
 pub(crate) const FIXED: [&str; 2] = ["rk4", "newmark"];
 
@@ -75,7 +75,7 @@ impl Plan {
         if fixed && (args.rtol.is_some() || args.atol.is_some()) {
             return misplaced(
                 "--rtol/--atol",
-                "give its `--step`, or take an adaptive method: auto, adams, dop853, dopri5, radau5, bdf",
+                "give its `--step`, or take an adaptive method: auto, adams, dop853, dopri5, radau5, bdf, rodas",
             );
         }
         if !fixed && args.step.is_some() {
@@ -94,7 +94,9 @@ impl Plan {
         let (usual, loosest) = match clearance {
             Some(size) => (CONTACT_TOLERANCE * size, CONTACT_LOOSEST * size),
             // Elastic links are stiff.
-            None if ["radau5", "bdf"].contains(&method) || (method == "auto" && args.variant.flexible.is_some()) => {
+            None if ["radau5", "bdf", "rodas"].contains(&method)
+                || (method == "auto" && args.variant.flexible.is_some()) =>
+            {
                 (STIFF_TOLERANCE, LOOSEST)
             }
             None => (TOLERANCE, LOOSEST),
@@ -133,6 +135,7 @@ impl Plan {
             "dopri5" => Box::new(DormandPrince5::default()),
             "radau5" => Box::new(Radau5::default()),
             "bdf" => Box::new(Bdf::default()),
+            "rodas" => Box::new(Rodas::default()),
             "rk4" => Box::new(Rk4::new(step)),
             "newmark" => Box::new(Newmark::new(step, self.corrector())),
             _ => Box::new(Adams::default()),

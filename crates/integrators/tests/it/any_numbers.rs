@@ -1,7 +1,7 @@
 //! Whatever numbers are given: an answer or a typed error, never a panic, in a bounded number of steps.
 
 use linkdyn_integrators::{
-    Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Progress, Radau5, Rk4, Settings,
+    Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Progress, Radau5, Rk4, Rodas, Settings,
 };
 use proptest::prelude::*;
 
@@ -57,6 +57,7 @@ proptest! {
         run(Radau5::default(), t, y0, settings);
         run(Bdf::default(), t, y0, settings);
         run(Auto::default(), t, y0, settings);
+        run(Rodas::default(), t, y0, settings);
         run(Radau5::fixed(settings[2]), t, y0, settings);
     }
 }

@@ -32,7 +32,7 @@ impl Constrained for Pendulum {
 }
 
 /// (x, y), their rates and λ at times of the published table and between, from the angle alone; checked against the table.
-fn exact(t: f64) -> [f64; 5] {
+pub fn exact(t: f64) -> [f64; 5] {
     let angle = Function(2, |_: f64, y: &[f64], dy: &mut [f64]| {
         (dy[0], dy[1]) = (y[1], -GRAVITY * y[0].sin());
         Ok(())

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use linkdyn_integrators::{
     Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark,
-    NotSettled, Ode, Progress, Radau5, Rk4, Settings,
+    NotSettled, Ode, Progress, Radau5, Rk4, Rodas, Settings,
 };
 
 use crate::problems::{Damped, Function, Kink};
@@ -36,7 +36,7 @@ fn failure<P: Ode, M: Method<P>>(
 }
 
 /// The same with each adaptive method.
-fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 6] {
+fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 7] {
     let dim = y0.len();
     [
         failure(
@@ -52,6 +52,7 @@ fn failures(rhs: Rhs, y0: &[f64], end: f64) -> [(IntegrationError, f64); 6] {
         failure(Function(dim, rhs), Radau5::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Bdf::default(), 0.0, y0, end, Settings::default()),
         failure(Function(dim, rhs), Auto::default(), 0.0, y0, end, Settings::default()),
+        failure(Function(dim, rhs), Rodas::default(), 0.0, y0, end, Settings::default()),
     ]
 }
 

@@ -13,6 +13,7 @@ mod failures;
 mod output;
 mod problems;
 mod radau;
+mod rodas;
 mod settings;
 mod stops;
 mod tolerance;

@@ -2,7 +2,7 @@
 
 use linkdyn_integrators::{
     Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress,
-    Radau5, Rk4, Settings,
+    Radau5, Rk4, Rodas, Settings,
 };
 
 use crate::problems::{Counting, Damped, Kink, Pleiades, distance, finish};
@@ -46,12 +46,14 @@ fn the_path_is_the_same_to_the_last_bit() {
     check(|| Kink, Radau5::default, &Kink::START);
     check(|| Kink, Bdf::default, &Kink::START);
     check(|| Kink, Auto::default, &Kink::START);
+    check(|| Kink, Rodas::default, &Kink::START);
     // With refused steps.
     check(|| Pleiades, Dop853::default, &Pleiades::START);
     check(|| Pleiades, Adams::default, &Pleiades::START);
     check(|| Pleiades, Radau5::default, &Pleiades::START);
     check(|| Pleiades, Bdf::default, &Pleiades::START);
     check(|| Pleiades, Auto::default, &Pleiades::START);
+    check(|| Pleiades, Rodas::default, &Pleiades::START);
 }
 
 #[test]
@@ -83,6 +85,7 @@ fn interpolation_is_continuous_from_step_to_step() {
     check(Radau5::default());
     check(Bdf::default());
     check(Auto::default());
+    check(Rodas::default());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use linkdyn_integrators::{
     Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, Method, Newmark, Ode, Progress,
-    Radau5, Rk4, SecondOrder, Settings,
+    Radau5, Rk4, Rodas, SecondOrder, Settings,
 };
 
 use crate::problems::{Damped, Function, distance, finish};
@@ -66,6 +66,7 @@ fn stops_are_hit_exactly() {
     check(Radau5::default(), 1e-6);
     check(Bdf::default(), 1e-6);
     check(Auto::default(), 1e-6);
+    check(Rodas::default(), 1e-6);
     check(Radau5::fixed(0.05), 1e-6);
 }
 
@@ -143,6 +144,7 @@ fn stops_of_all_kinds() {
     check(Radau5::default, 1e-8, 2000);
     check(Bdf::default, 1e-7, 2000);
     check(Auto::default, 1e-7, 2000);
+    check(Rodas::default, 1e-7, 2000);
 }
 
 /// t + h may round to beyond the stop; f must not be asked for there.
@@ -237,6 +239,7 @@ fn a_problem_switched_at_a_stop() {
     check(Radau5::default());
     check(Bdf::default());
     check(Auto::default());
+    check(Rodas::default());
 }
 
 /// A point on the unit circle whose right-hand side drifts off it.
@@ -280,6 +283,7 @@ fn projection_keeps_the_invariant_at_every_step() {
     check(Radau5::default());
     check(Bdf::default());
     check(Auto::default());
+    check(Rodas::default());
 }
 
 #[test]
@@ -304,12 +308,13 @@ fn problems_and_methods_as_trait_objects() {
     let boxed: Box<dyn Ode> = Box::new(Damped);
     let mut run = Integration::new(boxed, Adams::default(), 0.0, &Damped::START, Settings::default()).expect("good");
     finish(&mut run, 1.0);
-    let methods: [Box<dyn Method<Damped>>; 6] = [
+    let methods: [Box<dyn Method<Damped>>; 7] = [
         Box::new(Dop853::default()),
         Box::new(Adams::default()),
         Box::new(Radau5::default()),
         Box::new(Bdf::default()),
         Box::new(Auto::default()),
+        Box::new(Rodas::default()),
         Box::new(Rk4::new(0.01)),
     ];
     for method in methods {

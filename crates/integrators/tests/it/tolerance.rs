@@ -1,6 +1,8 @@
 //! What a tolerance buys.
 
-use linkdyn_integrators::{Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Settings};
+use linkdyn_integrators::{
+    Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Rodas, Settings,
+};
 
 use crate::problems::{Damped, Function, Kink, Pleiades, distance, finish, solve};
 
@@ -41,6 +43,7 @@ fn error_follows_tolerance() {
     all_respond(Radau5::default);
     all_respond(Bdf::default);
     all_respond(Auto::default);
+    all_respond(Rodas::default);
 }
 
 #[test]
@@ -127,4 +130,5 @@ fn backward_and_back() {
     there_and_back(Radau5::default());
     there_and_back(Bdf::default());
     there_and_back(Auto::default());
+    there_and_back(Rodas::default());
 }

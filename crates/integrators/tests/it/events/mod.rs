@@ -8,7 +8,7 @@ mod state;
 
 use linkdyn_integrators::{
     Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, EvalError, Integration, IntegrationError, Method, Newmark,
-    Ode, Progress, Radau5, Rk4, SecondOrder, Settings,
+    Ode, Progress, Radau5, Rk4, Rodas, SecondOrder, Settings,
 };
 
 type Answer = Result<(), EvalError>;
