@@ -3,6 +3,7 @@
 mod architecture;
 mod assembly;
 mod baumgarte;
+mod budget;
 mod clearance;
 mod clearance_contact;
 mod clearance_refusals;

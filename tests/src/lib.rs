@@ -2,6 +2,7 @@
 //! at random, loads, known linkages, and small numerical tools.
 
 mod blueprint;
+pub mod budget;
 pub mod linkages;
 pub mod loads;
 pub mod numbers;
