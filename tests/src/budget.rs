@@ -92,15 +92,15 @@ impl Budget {
                     .push(format!("{row}: {is} allocations, the budget is {due}"));
             }
             if let (true, Some(is), Some(due)) = (same_code, row.instructions, budget.instructions) {
-                let excess = is as f64 / due as f64 - 1.0;
+                let ratio = is as f64 / due as f64;
                 let told = format!(
                     "{row}: {is} instructions, {:+.1} %, the budget is {due}",
-                    100.0 * excess
+                    100.0 * (ratio - 1.0)
                 );
                 // What is not a number is no success.
-                if excess < -MARGIN {
+                if ratio < 1.0 - MARGIN {
                     found.notes.push(format!("{told}; it may be lowered"));
-                } else if excess.is_nan() || excess > MARGIN {
+                } else if ratio.is_nan() || ratio > 1.0 + MARGIN {
                     found.failures.push(told);
                 }
             }
