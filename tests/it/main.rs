@@ -23,6 +23,7 @@ mod invariances;
 mod linkage_refusals;
 mod load_internals;
 mod newton_euler;
+mod peers;
 mod projection;
 mod puma560;
 mod reaction_loop;

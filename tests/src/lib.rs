@@ -8,6 +8,8 @@ pub mod loads;
 pub mod numbers;
 pub mod reference;
 pub mod scenes;
+#[path = "../../crates/integrators/tests/it/standard_odes.rs"]
+pub mod standard_odes;
 pub mod strategies;
 
 pub use blueprint::{Blueprint, Cut, Machine, Part};

@@ -13,5 +13,6 @@ mod output;
 mod problems;
 mod radau;
 mod settings;
+mod standard_odes;
 mod stops;
 mod tolerance;
