@@ -3,6 +3,7 @@
 mod architecture;
 mod assembly;
 mod baumgarte;
+mod budget;
 mod clearance;
 mod clearance_contact;
 mod clearance_refusals;
@@ -22,6 +23,7 @@ mod invariances;
 mod linkage_refusals;
 mod load_internals;
 mod newton_euler;
+mod peers;
 mod projection;
 mod puma560;
 mod reaction_loop;

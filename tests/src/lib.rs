@@ -2,11 +2,14 @@
 //! at random, loads, known linkages, and small numerical tools.
 
 mod blueprint;
+pub mod budget;
 pub mod linkages;
 pub mod loads;
 pub mod numbers;
 pub mod reference;
 pub mod scenes;
+#[path = "../../crates/integrators/tests/it/standard_odes.rs"]
+pub mod standard_odes;
 pub mod strategies;
 
 pub use blueprint::{Blueprint, Cut, Machine, Part};

@@ -1,93 +1,30 @@
 //! Stiff problems of the test set for IVP solvers (benchmark 05-standard-odes): digits and work.
 
-use linkdyn_integrators::{Bdf, EvalError, Method, Radau5, Settings, Statistics};
+use linkdyn_integrators::{Bdf, Method, Radau5, Settings, Statistics};
 
 use crate::problems::{Function, solve};
-
-pub type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), EvalError>;
-
-pub struct Standard {
-    rhs: Rhs,
-    start: &'static [f64],
-    end: f64,
-    exact: &'static [f64],
-}
-
-/// Eight reactions with light.
-pub const HIRES: Standard = Standard {
-    rhs: |_, y, dy| {
-        let reaction = 280.0 * y[5] * y[7];
-        dy[0] = -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007;
-        dy[1] = 1.71 * y[0] - 8.75 * y[1];
-        dy[2] = -10.03 * y[2] + 0.43 * y[3] + 0.035 * y[4];
-        dy[3] = 8.32 * y[1] + 1.71 * y[2] - 1.12 * y[3];
-        dy[4] = -1.745 * y[4] + 0.43 * (y[5] + y[6]);
-        dy[5] = -reaction + 0.69 * y[3] + 1.71 * y[4] - 0.43 * y[5] + 0.69 * y[6];
-        dy[6] = reaction - 1.81 * y[6];
-        dy[7] = -dy[6];
-        Ok(())
-    },
-    start: &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0057],
-    end: 321.8122,
-    exact: &[
-        0.0007371312573325668,
-        0.0001442485726316185,
-        5.888729740967575e-05,
-        0.001175651343283149,
-        0.002386356198831331,
-        0.006238968252742796,
-        0.002849998395185769,
-        0.002850001604814231,
-    ],
-};
-
-pub const VAN_DER_POL: Standard = Standard {
-    rhs: |_, y, dy| {
-        (dy[0], dy[1]) = (y[1], 1000.0 * (1.0 - y[0] * y[0]) * y[1] - y[0]);
-        Ok(())
-    },
-    start: &[2.0, 0.0],
-    end: 2000.0,
-    exact: &[1.706167732170469, -0.0008928097010248125],
-};
-
-pub const ROBERTSON: Standard = Standard {
-    rhs: |_, y, dy| {
-        (dy[0], dy[2]) = (-0.04 * y[0] + 1e4 * y[1] * y[2], 3e7 * y[1] * y[1]);
-        dy[1] = -dy[0] - dy[2];
-        Ok(())
-    },
-    start: &[1.0, 0.0, 0.0],
-    end: 1e11,
-    exact: &[2.083340149701255e-08, 8.333360770334713e-14, 0.999999979166505],
-};
+use crate::standard_odes::{HIRES, ROBERTSON, Standard, VAN_DER_POL};
 
 /// Digits of the worst component at the end, relative to its value.
-pub fn digits(
-    problem: &Standard,
-    method: impl Method<Function<Rhs>>,
-    relative: f64,
-    absolute: f64,
-) -> (f64, Statistics) {
+pub fn digits(problem: &Standard, method: impl Method<Standard>, relative: f64) -> (f64, Statistics) {
     let settings = Settings {
         first_step: Some(1e-6),
-        ..Settings::tolerances(relative, absolute)
+        ..Settings::tolerances(relative, problem.ratio * relative)
     };
-    let &Standard { rhs, start, end, exact } = problem;
-    let (y, statistics) = solve(Function(start.len(), rhs), method, start, end, settings);
-    let digits = |(y, exact): (&f64, &f64)| -((y - exact) / exact).abs().log10();
-    (
-        y.iter().zip(exact).map(digits).fold(f64::INFINITY, f64::min),
-        statistics,
-    )
+    let (y, statistics) = solve(*problem, method, problem.start, problem.end, settings);
+    (problem.digits(&y), statistics)
 }
 
-/// At each relative tolerance: at least so many digits, at most so many evaluations. Absolute tolerances are smaller by `ratio`.
-fn check(problem: &Standard, ratio: f64, expected: [(f64, f64, u64); 4]) {
+/// At each relative tolerance: at least so many digits, at most so many evaluations.
+fn check(problem: &Standard, expected: [(f64, f64, u64); 4]) {
     for (relative, least, most) in expected {
-        let (digits, statistics) = digits(problem, Radau5::default(), relative, ratio * relative);
-        assert!(digits >= least, "{relative:e}: {digits} digits");
-        assert!(statistics.evaluations <= most, "{relative:e}: {statistics:?}");
+        let (digits, statistics) = digits(problem, Radau5::default(), relative);
+        assert!(digits >= least, "{}, {relative:e}: {digits} digits", problem.name);
+        assert!(
+            statistics.evaluations <= most,
+            "{}, {relative:e}: {statistics:?}",
+            problem.name
+        );
     }
 }
 
@@ -95,7 +32,6 @@ fn check(problem: &Standard, ratio: f64, expected: [(f64, f64, u64); 4]) {
 fn hires() {
     check(
         &HIRES,
-        1e-2,
         [
             (1e-4, 2.0, 750),
             (1e-7, 7.2, 2600),
@@ -109,7 +45,6 @@ fn hires() {
 fn van_der_pol() {
     check(
         &VAN_DER_POL,
-        1.0,
         [
             (1e-4, 3.0, 2300),
             (1e-7, 6.7, 8000),
@@ -123,7 +58,6 @@ fn van_der_pol() {
 fn robertson() {
     check(
         &ROBERTSON,
-        1e-6,
         [
             (1e-4, 3.7, 1500),
             (1e-7, 7.8, 6500),
@@ -137,7 +71,7 @@ fn robertson() {
 /// 280 steps, 242 accepted, 668 iterations, 162 Jacobians, 253 pairs of factorisations.
 #[test]
 fn work_of_the_original() {
-    let rhs: Rhs = |_, y, dy| {
+    let rhs = |_: f64, y: &[f64], dy: &mut [f64]| {
         (dy[0], dy[1]) = (y[1], ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6);
         Ok(())
     };
@@ -172,46 +106,46 @@ fn work_of_the_original() {
 }
 
 /// The same by backward differentiation: digits grow with each power of ten.
-fn check_bdf(problem: &Standard, ratio: f64, least: [f64; 7], most: [u64; 7]) {
+fn check_bdf(problem: &Standard, least: [f64; 7], most: [u64; 7]) {
     for (i, (least, most)) in least.into_iter().zip(most).enumerate() {
         let relative = f64::powi(10.0, -4 - i as i32);
-        let (digits, statistics) = digits(problem, Bdf::default(), relative, ratio * relative);
-        assert!(digits >= least, "{relative:e}: {digits} digits");
-        assert!(statistics.evaluations <= most, "{relative:e}: {statistics:?}");
+        let (digits, statistics) = digits(problem, Bdf::default(), relative);
+        assert!(digits >= least, "{}, {relative:e}: {digits} digits", problem.name);
+        assert!(
+            statistics.evaluations <= most,
+            "{}, {relative:e}: {statistics:?}",
+            problem.name
+        );
     }
 }
 
 #[test]
 fn hires_by_bdf() {
     let digits = [2.0, 2.9, 3.7, 4.9, 5.7, 6.6, 7.4];
-    check_bdf(&HIRES, 1e-2, digits, [420, 520, 680, 860, 1140, 1590, 2270]);
+    check_bdf(&HIRES, digits, [420, 520, 680, 860, 1140, 1590, 2270]);
 }
 
 #[test]
 fn van_der_pol_by_bdf() {
     let digits = [2.6, 3.2, 4.1, 5.3, 6.1, 6.9, 7.7];
-    check_bdf(&VAN_DER_POL, 1.0, digits, [1010, 1340, 1720, 2300, 3320, 4810, 7030]);
+    check_bdf(&VAN_DER_POL, digits, [1010, 1340, 1720, 2300, 3320, 4810, 7030]);
 }
 
 #[test]
 fn robertson_by_bdf() {
     let digits = [3.0, 3.7, 4.4, 5.1, 5.9, 6.7, 7.6];
-    check_bdf(&ROBERTSON, 1e-6, digits, [790, 1060, 1410, 1920, 2720, 3910, 5690]);
+    check_bdf(&ROBERTSON, digits, [790, 1060, 1410, 1920, 2720, 3910, 5690]);
 }
 
 /// What the work of these runs is made of, exactly: a change that costs or saves work shows.
 #[test]
 fn counters_of_bdf() {
-    let counters = |problem: &Standard, ratio: f64| {
-        let s = digits(problem, Bdf::default(), 1e-6, ratio * 1e-6).1;
+    let counters = |problem: &Standard| {
+        let s = digits(problem, Bdf::default(), 1e-6).1;
         let steps = [s.accepted, s.rejected, s.divergences];
         (steps, [s.evaluations, s.jacobians, s.factorisations, s.iterations])
     };
-    let found = [
-        counters(&HIRES, 1e-2),
-        counters(&VAN_DER_POL, 1.0),
-        counters(&ROBERTSON, 1e-6),
-    ];
+    let found = [counters(&HIRES), counters(&VAN_DER_POL), counters(&ROBERTSON)];
     let expected = [
         ([347, 0, 0], [635, 21, 106, 466]),
         ([1177, 4, 0], [1547, 71, 464, 1409]),

@@ -15,5 +15,6 @@ mod problems;
 mod radau;
 mod rodas;
 mod settings;
+mod standard_odes;
 mod stops;
 mod tolerance;

@@ -1,5 +1,6 @@
 //! Problems with known solutions, and a wrapper that counts.
 
+use crate::standard_odes::{PLEIADES, PLEIADES_END, PLEIADES_START};
 use linkdyn_integrators::{EvalError, Integration, Method, Ode, Progress, SecondOrder, Settings, Statistics};
 
 /// x'' + 2 D x' + x = 0 with D = 0.1, and the integral of x.
@@ -91,60 +92,17 @@ impl SecondOrder for Rational {
 pub struct Pleiades;
 
 impl Pleiades {
-    pub const START: [f64; 28] = [
-        3.0, 3.0, -1.0, -3.0, 2.0, -2.0, 2.0, 3.0, -3.0, 2.0, 0.0, 0.0, -4.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.75, -1.5,
-        0.0, 0.0, 0.0, -1.25, 1.0, 0.0, 0.0,
-    ];
+    pub const START: [f64; 28] = PLEIADES_START;
     /// At t = 3, from the test set for IVP solvers.
-    pub const END: [f64; 28] = [
-        0.3706139143970502,
-        3.237284092057233,
-        -3.222559032418324,
-        0.659709145577531,
-        0.3425581707156584,
-        1.562172101400631,
-        -0.7003092922212495,
-        -3.943437585517392,
-        -3.27138097397255,
-        5.225081843456543,
-        -2.59061243497747,
-        1.198213693392275,
-        -0.2429682344935824,
-        1.09144924042898,
-        3.417003806314313,
-        1.354584501625501,
-        -2.590065597810775,
-        2.025053734714242,
-        -1.155815100160448,
-        -0.8072988170223021,
-        0.595239635420871,
-        -3.74124496123401,
-        0.377345968575063,
-        0.9386858869551074,
-        0.3667922227200571,
-        -0.347404635380849,
-        2.344915448180937,
-        -1.947020434263292,
-    ];
+    pub const END: [f64; 28] = PLEIADES_END;
 }
 
 impl Ode for Pleiades {
     fn dim(&self) -> usize {
         28
     }
-    fn rhs(&mut self, _t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
-        let (place, rate) = y.split_at(14);
-        dy[..14].copy_from_slice(rate);
-        for i in 0..7 {
-            let (mut ax, mut ay) = (0.0, 0.0);
-            for j in (0..7).filter(|&j| j != i) {
-                let (dx, dy) = (place[j] - place[i], place[7 + j] - place[7 + i]);
-                let pull = (j + 1) as f64 / (dx * dx + dy * dy).powf(1.5);
-                ax += pull * dx;
-                ay += pull * dy;
-            }
-            (dy[14 + i], dy[21 + i]) = (ax, ay);
-        }
+    fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
+        (PLEIADES.rhs)(t, y, dy);
         Ok(())
     }
 }
