@@ -49,26 +49,49 @@ proptest! {
 
 #[test]
 fn an_rssr_has_two_rocker_angles_with_the_rod_on_either_side_of_its_universal_joint() {
-    let rssr = Rssr { crank: 0.1, rocker: 0.25, base: [0.3, 0.1, 0.2], rod: 0.45 };
+    let rssr = Rssr {
+        crank: 0.1,
+        rocker: 0.25,
+        base: [0.3, 0.1, 0.2],
+        rod: 0.45,
+    };
     let mechanism = rssr.build();
     for theta in [0.0, 1.0, 2.0, 4.0] {
         let found = branches(&mechanism, &holding("theta", theta), &Search::default()).expect("isolated");
         assert_eq!(found.positions.len(), 4);
         for phi in rssr.rocker_angles(theta).expect("a full turn") {
-            let here: Vec<_> = found.positions.iter().filter(|one| apart(one.q[3], phi) < 1e-10).collect();
-            let [one, other] = here[..] else { panic!("{} at {phi}", here.len()) };
+            let here: Vec<_> = found
+                .positions
+                .iter()
+                .filter(|one| apart(one.q[3], phi) < 1e-10)
+                .collect();
+            let [one, other] = here[..] else {
+                panic!("{} at {phi}", here.len())
+            };
             // The rod lies the same with the first axis turned by half a turn.
             assert!((apart(one.q[1], other.q[1]) - PI).abs() < 1e-10);
             assert!(apart(one.q[2], PI - other.q[2]) < 1e-10);
-            assert!([one, other].iter().all(|one| matches!(one.branch, Branch::Positive | Branch::Negative)));
+            assert!(
+                [one, other]
+                    .iter()
+                    .all(|one| matches!(one.branch, Branch::Positive | Branch::Negative))
+            );
         }
     }
 }
 
 #[test]
 fn a_locked_angle_has_none() {
-    let rssr = Rssr { crank: 0.1, rocker: 0.25, base: [0.4, 0.1, 0.2], rod: 0.5 };
-    let search = Search { guesses: 50, ..Search::default() };
+    let rssr = Rssr {
+        crank: 0.1,
+        rocker: 0.25,
+        base: [0.4, 0.1, 0.2],
+        rod: 0.5,
+    };
+    let search = Search {
+        guesses: 50,
+        ..Search::default()
+    };
     let found = branches(&rssr.build(), &holding("theta", PI), &search).expect("no error");
     assert!(found.positions.is_empty() && found.lost == 50);
 }
@@ -77,11 +100,14 @@ fn a_locked_angle_has_none() {
 fn slider_crank() -> Mechanism {
     let mut linkage = Linkage::new([0.0; 3]);
     let rod = |length| linkdyn_dynamics::RigidInertia::solid_cylinder(7850.0, 0.02, length, &Vector3::x());
-    let [crank, rod_link, slider] = [("crank", 0.3), ("rod", 1.0), ("slider", 0.1)].map(|(n, l)| linkage.link(n, rod(l)));
+    let [crank, rod_link, slider] =
+        [("crank", 0.3), ("rod", 1.0), ("slider", 0.1)].map(|(n, l)| linkage.link(n, rod(l)));
     let z = Joint::revolute_z();
     linkage.joint("crank", z, Mount::at_origin(Linkage::GROUND), Mount::at_origin(crank));
     linkage.joint("rod", z, Mount::at(crank, [0.3, 0.0, 0.0]), Mount::at_origin(rod_link));
-    let x = Joint::Prismatic { axis: Vector3::x_axis() };
+    let x = Joint::Prismatic {
+        axis: Vector3::x_axis(),
+    };
     linkage.joint("x", x, Mount::at_origin(Linkage::GROUND), Mount::at_origin(slider));
     linkage.cut("pin", z, Mount::at(rod_link, [1.0, 0.0, 0.0]), Mount::at_origin(slider));
     linkage.build().expect("valid")
@@ -104,14 +130,26 @@ fn ball_joints_with_quaternions_are_counted_once() {
     let mut linkage = Linkage::new([0.0; 3]);
     let rod = linkdyn_dynamics::RigidInertia::solid_cylinder(7850.0, 0.02, 1.0, &Vector3::x());
     let link = linkage.link("ball", rod);
-    linkage.joint("b", Joint::Spherical, Mount::at_origin(Linkage::GROUND), Mount::at_origin(link));
+    linkage.joint(
+        "b",
+        Joint::Spherical,
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link),
+    );
     let turned = Pose::turn(Unit::new_normalize(Vector3::new(1.0, 2.0, 3.0)), 1.0);
-    linkage.cut("weld", Joint::Fixed, Mount::at_origin(link), Mount::with_pose(Linkage::GROUND, turned));
+    linkage.cut(
+        "weld",
+        Joint::Fixed,
+        Mount::at_origin(link),
+        Mount::with_pose(Linkage::GROUND, turned),
+    );
     let mechanism = linkage.build().expect("valid");
     let found = branches(&mechanism, &Start::default(), &Search::default()).expect("isolated");
     // Its equations ask for three right angles only, which seven other orientations fulfil too.
     assert!(found.positions.len() == 1 && found.reversed > 100, "{found:?}");
-    let [w, x, y, z] = found.positions[0].q[..] else { panic!("four") };
+    let [w, x, y, z] = found.positions[0].q[..] else {
+        panic!("four")
+    };
     let axis = Vector3::new(1.0, 2.0, 3.0).normalize() * 0.5_f64.sin();
     let expected = [0.5_f64.cos(), axis.x, axis.y, axis.z];
     let product: f64 = [w, x, y, z].iter().zip(expected).map(|(a, b)| a * b).sum();
@@ -121,14 +159,33 @@ fn ball_joints_with_quaternions_are_counted_once() {
 #[test]
 fn equal_seeds_give_equal_searches_and_too_little_held_is_refused() {
     let mechanism = slider_crank();
-    let search = |seed| branches(&mechanism, &holding("crank", 0.7), &Search { seed, ..Search::default() }).expect("isolated");
+    let search = |seed| {
+        branches(
+            &mechanism,
+            &holding("crank", 0.7),
+            &Search {
+                seed,
+                ..Search::default()
+            },
+        )
+        .expect("isolated")
+    };
     assert_eq!(search(7), search(7));
     assert_eq!(search(7).positions.len(), search(8).positions.len());
     assert_ne!(search(7).positions[0].hits, 0);
     match branches(&mechanism, &Start::default(), &Search::default()) {
-        Err(AnalysisError::Undetermined { driven, free }) => assert_eq!((driven.as_str(), free.as_str()), ("nothing", "`crank`, `rod`, `x`")),
+        Err(AnalysisError::Undetermined { driven, free }) => {
+            assert_eq!((driven.as_str(), free.as_str()), ("nothing", "`crank`, `rod`, `x`"))
+        }
         other => panic!("{other:?}"),
     }
-    let none = branches(&mechanism, &holding("crank", 0.7), &Search { guesses: 0, ..Search::default() });
+    let none = branches(
+        &mechanism,
+        &holding("crank", 0.7),
+        &Search {
+            guesses: 0,
+            ..Search::default()
+        },
+    );
     assert!(matches!(none, Err(AnalysisError::Number { .. })));
 }

@@ -10,7 +10,11 @@ use linkdyn_mechanisms::{Along, Drive, Linkage, Mechanism, Mount, Spring, Start}
 use linkdyn_tests::linkages::{FourBar, bricard, hanging};
 use std::f64::consts::PI;
 
-const NEAREST: Settings = Settings { seek: Seek::Nearest, time: 0.0, iterations: 100 };
+const NEAREST: Settings = Settings {
+    seek: Seek::Nearest,
+    time: 0.0,
+    iterations: 100,
+};
 
 #[test]
 fn a_pendulum_hangs_or_stands() {
@@ -28,7 +32,12 @@ fn a_pendulum_hangs_or_stands() {
     assert!((found.lowest / square + 1.0).abs() < 1e-9);
     // Put upright exactly, it falls if a stable position is wanted.
     let found = equilibrium(&mechanism, &[PI], &Settings::default()).expect("falls");
-    assert!(found.q[0].rem_euclid(2.0 * PI).min(2.0 * PI - found.q[0].rem_euclid(2.0 * PI)) < 1e-11);
+    assert!(
+        found.q[0]
+            .rem_euclid(2.0 * PI)
+            .min(2.0 * PI - found.q[0].rem_euclid(2.0 * PI))
+            < 1e-11
+    );
 }
 
 #[test]
@@ -37,11 +46,31 @@ fn a_torque_holds_a_pendulum_aside_until_it_is_too_large() {
         let mut linkage = Linkage::new([0.0, -9.81, 0.0]);
         let inertia = linkdyn_dynamics::RigidInertia::solid_cylinder(7850.0, 0.02, 1.0, &-nalgebra::Vector3::y());
         let link = linkage.link("bar", inertia);
-        let joint = linkage.joint("a", Joint::revolute_z(), Mount::at_origin(Linkage::GROUND), Mount::at_origin(link));
-        linkage.drive(joint, Drive::Ramp { torque: inertia.mass * 9.81 * 0.5 * torque, rise_time: 2.0 });
+        let joint = linkage.joint(
+            "a",
+            Joint::revolute_z(),
+            Mount::at_origin(Linkage::GROUND),
+            Mount::at_origin(link),
+        );
+        linkage.drive(
+            joint,
+            Drive::Ramp {
+                torque: inertia.mass * 9.81 * 0.5 * torque,
+                rise_time: 2.0,
+            },
+        );
         linkage.build().expect("valid")
     };
-    let at = |torque: f64, time: f64| equilibrium(&holding(torque), &[0.0], &Settings { time, ..Settings::default() });
+    let at = |torque: f64, time: f64| {
+        equilibrium(
+            &holding(torque),
+            &[0.0],
+            &Settings {
+                time,
+                ..Settings::default()
+            },
+        )
+    };
     assert!((at(0.5, 2.0).expect("held").q[0] - PI / 6.0).abs() < 1e-11);
     // Half of the torque at half of its rise.
     assert!((at(0.5, 1.0).expect("held").q[0] - 0.25_f64.asin()).abs() < 1e-11);
@@ -55,7 +84,10 @@ fn a_torque_holds_a_pendulum_aside_until_it_is_too_large() {
 fn round(mechanism: &Mechanism, q: &[f64], name: &str, to: f64, parts: usize) -> Vec<(f64, f64)> {
     let path = positions(mechanism, q, &Sweep::new(name, to, parts)).expect("moves");
     let still = vec![0.0; mechanism.system().tree().speeds()];
-    let at = mechanism.coordinate_names().position(|known| known == name).expect("a coordinate");
+    let at = mechanism
+        .coordinate_names()
+        .position(|known| known == name)
+        .expect("a coordinate");
     let energy = |q: &[f64]| mechanism.system().energy(0.0, q, &still).total();
     path.rows.iter().map(|row| (row.q[at], energy(&row.q))).collect()
 }
@@ -63,17 +95,33 @@ fn round(mechanism: &Mechanism, q: &[f64], name: &str, to: f64, parts: usize) ->
 /// Derivatives of the potential energy by a driven coordinate at a position: first and second.
 fn slopes(mechanism: &Mechanism, q: &[f64], name: &str) -> (f64, f64) {
     let h = 1e-2;
-    let at = mechanism.coordinate_names().position(|known| known == name).expect("a coordinate");
+    let at = mechanism
+        .coordinate_names()
+        .position(|known| known == name)
+        .expect("a coordinate");
     let value = |k: f64| round(mechanism, q, name, q[at] + k * h, 1)[1].1;
-    let [a, b, c, d, e] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| if k == 0.0 { round(mechanism, q, name, q[at] + h, 1)[0].1 } else { value(k) });
-    ((8.0 * (d - b) - (e - a)) / (12.0 * h), (16.0 * (b + d) - 30.0 * c - (a + e)) / (12.0 * h * h))
+    let [a, b, c, d, e] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| {
+        if k == 0.0 {
+            round(mechanism, q, name, q[at] + h, 1)[0].1
+        } else {
+            value(k)
+        }
+    });
+    (
+        (8.0 * (d - b) - (e - a)) / (12.0 * h),
+        (16.0 * (b + d) - 30.0 * c - (a + e)) / (12.0 * h * h),
+    )
 }
 
 #[test]
 fn a_hanging_four_bar_lies_where_its_potential_energy_is_least() {
     for closing in [Joint::revolute_z(), Joint::Spherical] {
         let plane = Pose::turn(nalgebra::Vector3::y_axis(), 0.4);
-        let four_bar = FourBar { lengths: [0.3, 1.0, 0.9, 1.1], plane, closing };
+        let four_bar = FourBar {
+            lengths: [0.3, 1.0, 0.9, 1.1],
+            plane,
+            closing,
+        };
         let mechanism = four_bar.linkage().build().expect("valid");
         let start = Start {
             positions: vec![("crank".into(), 0.2), ("coupler".into(), 0.7), ("rocker".into(), 1.6)],
@@ -85,7 +133,12 @@ fn a_hanging_four_bar_lies_where_its_potential_energy_is_least() {
         let lowest = way.iter().min_by(|a, b| a.1.total_cmp(&b.1)).expect("rows");
         let found = equilibrium(&mechanism, &q, &Settings::default()).expect("hangs");
         let crank = (found.q[0] - lowest.0).rem_euclid(2.0 * PI);
-        assert!(crank.min(2.0 * PI - crank) < 2.0 * PI / 720.0, "{} {}", found.q[0], lowest.0);
+        assert!(
+            crank.min(2.0 * PI - crank) < 2.0 * PI / 720.0,
+            "{} {}",
+            found.q[0],
+            lowest.0
+        );
         assert_eq!(found.stability, Stability::Stable);
         let (first, second) = slopes(&mechanism, &found.q, "crank");
         assert!(first.abs() < 1e-6 * second, "{first} {second}");
@@ -93,7 +146,14 @@ fn a_hanging_four_bar_lies_where_its_potential_energy_is_least() {
         if found.independent == ["crank"] {
             assert!((found.stiffness[(0, 0)] / second - 1.0).abs() < 1e-6);
         }
-        let residual = mechanism.system().violation(&found.q, &[0.0; 3], &mut linkdyn_dynamics::Workspace::new(mechanism.system())).0;
+        let residual = mechanism
+            .system()
+            .violation(
+                &found.q,
+                &[0.0; 3],
+                &mut linkdyn_dynamics::Workspace::new(mechanism.system()),
+            )
+            .0;
         assert!(residual < 1e-13);
     }
 }
@@ -106,7 +166,11 @@ fn bricards_loop_sinks_to_the_least_of_its_energy_in_spite_of_its_redundant_row(
     let name = &found.independent[0];
     let (first, second) = slopes(&mechanism, &found.q, name);
     assert!(first.abs() < 1e-6 * second, "{first} {second}");
-    assert!((found.stiffness[(0, 0)] / second - 1.0).abs() < 1e-6, "{} {second}", found.stiffness);
+    assert!(
+        (found.stiffness[(0, 0)] / second - 1.0).abs() < 1e-6,
+        "{} {second}",
+        found.stiffness
+    );
 }
 
 /// A steel bar of 1 m and 10 x 10 mm, clamped at its beginning, and the sag of its end.
@@ -116,12 +180,21 @@ fn sag(n: usize, gravity: f64) -> f64 {
     let beam = divide(1.0, &section, &material, Division::Standard(n)).expect("a beam");
     let mut linkage = Linkage::new([0.0, 0.0, -gravity]);
     let link = linkage.flexible_link("b", &beam, Along::X);
-    linkage.joint("clamp", Joint::Fixed, Mount::at_origin(Linkage::GROUND), Mount::at_origin(link.elements[0]));
+    linkage.joint(
+        "clamp",
+        Joint::Fixed,
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link.elements[0]),
+    );
     let mechanism = linkage.build().expect("valid");
     let q = vec![0.0; mechanism.system().tree().coordinates()];
     let found = equilibrium(&mechanism, &q, &Settings::default()).expect("sags");
     let nearest = equilibrium(&mechanism, &q, &NEAREST).expect("sags");
-    let apart = found.q.iter().zip(&nearest.q).fold(0.0, |s, (a, b)| f64::max(s, (a - b).abs()));
+    let apart = found
+        .q
+        .iter()
+        .zip(&nearest.q)
+        .fold(0.0, |s, (a, b)| f64::max(s, (a - b).abs()));
     assert!(apart < 1e-11 && found.stability == Stability::Stable, "{apart:e}");
     let mut places = Positions::new(mechanism.system().tree());
     mechanism.system().tree().positions(&found.q, &mut places);
@@ -147,7 +220,11 @@ fn a_cantilever_sags_as_beam_theory_says() {
 
 #[test]
 fn a_loop_with_a_flexible_coupler_rests() {
-    let scene = rsup(&Rsup { flexible: Some(3), ..Rsup::default() }).expect("a variant");
+    let scene = rsup(&Rsup {
+        flexible: Some(3),
+        ..Rsup::default()
+    })
+    .expect("a variant");
     let mechanism = scene.linkage.build().expect("valid");
     let (state, _) = mechanism.assemble(&scene.start).expect("closes");
     let found = equilibrium(&mechanism, &state.q, &Settings::default()).expect("rests");
@@ -156,10 +233,19 @@ fn a_loop_with_a_flexible_coupler_rests() {
     assert!(energy(&found.q) < energy(&state.q));
     // Nothing accelerates from there.
     let mut work = linkdyn_dynamics::Workspace::new(mechanism.system());
-    mechanism.system().evaluate(0.0, &found.q, &still, &mut work).expect("regular");
+    mechanism
+        .system()
+        .evaluate(0.0, &found.q, &still, &mut work)
+        .expect("regular");
     assert!(work.rates().iter().all(|a| a.abs() < 1e-4), "{:?}", work.rates());
     assert!(found.multipliers.iter().any(|l| l.abs() > 0.1));
-    assert!(found.multipliers.iter().zip(work.multipliers()).all(|(a, b)| (a - b).abs() < 1e-6));
+    assert!(
+        found
+            .multipliers
+            .iter()
+            .zip(work.multipliers())
+            .all(|(a, b)| (a - b).abs() < 1e-6)
+    );
 }
 
 #[test]
@@ -167,13 +253,29 @@ fn what_nothing_pushes_is_indifferent_and_what_cannot_move_is_refused() {
     let mut linkage = Linkage::new([0.0; 3]);
     let rod = linkdyn_dynamics::RigidInertia::solid_cylinder(7850.0, 0.02, 1.0, &nalgebra::Vector3::x());
     let link = linkage.link("free", rod);
-    let joint = linkage.joint("a", Joint::revolute_z(), Mount::at_origin(Linkage::GROUND), Mount::at_origin(link));
+    let joint = linkage.joint(
+        "a",
+        Joint::revolute_z(),
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link),
+    );
     let free = equilibrium(&linkage.build().expect("valid"), &[0.3], &Settings::default()).expect("rests anywhere");
     assert!(free.q == [0.3] && free.stability == Stability::Indifferent && free.iterations == 0);
-    linkage.springs(joint, &[Spring { stiffness: 3.0, damping: 0.1 }]);
+    linkage.springs(
+        joint,
+        &[Spring {
+            stiffness: 3.0,
+            damping: 0.1,
+        }],
+    );
     let sprung = equilibrium(&linkage.build().expect("valid"), &[0.3], &Settings::default()).expect("rests");
     assert!(sprung.q[0].abs() < 1e-12 && (sprung.stiffness[(0, 0)] - 3.0).abs() < 1e-10);
-    linkage.cut("lock", Joint::Fixed, Mount::at_origin(link), Mount::at_origin(Linkage::GROUND));
+    linkage.cut(
+        "lock",
+        Joint::Fixed,
+        Mount::at_origin(link),
+        Mount::at_origin(Linkage::GROUND),
+    );
     let locked = equilibrium(&linkage.build().expect("valid"), &[0.0], &Settings::default());
     assert!(matches!(locked, Err(AnalysisError::NoFreedom)), "{locked:?}");
 }

@@ -14,16 +14,28 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
 
 fn at_rest(q: &[f64], speeds: usize) -> State {
-    State { q: q.to_vec(), v: vec![0.0; speeds] }
+    State {
+        q: q.to_vec(),
+        v: vec![0.0; speeds],
+    }
 }
 
 #[test]
 fn a_pendulum_with_spring_and_damper() {
     let (length, mass, stiffness, damping) = (0.7, 2.0, 5.0, 0.6);
     let mut linkage = Linkage::new([0.0, -9.81, 0.0]);
-    let inertia = RigidInertia { mass, com: Vector3::new(0.0, -length, 0.0), about_com: Matrix3::zeros() };
+    let inertia = RigidInertia {
+        mass,
+        com: Vector3::new(0.0, -length, 0.0),
+        about_com: Matrix3::zeros(),
+    };
     let link = linkage.link("bar", inertia);
-    let joint = linkage.joint("a", Joint::revolute_z(), Mount::at_origin(Linkage::GROUND), Mount::at_origin(link));
+    let joint = linkage.joint(
+        "a",
+        Joint::revolute_z(),
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link),
+    );
     linkage.springs(joint, &[Spring { stiffness, damping }]);
     let mechanism = linkage.build().expect("valid");
     let found = linearise(&mechanism, 0.0, &at_rest(&[0.0], 1)).expect("at rest");
@@ -43,7 +55,10 @@ fn a_pendulum_with_spring_and_damper() {
 fn a_double_pendulum() {
     let (length, mass) = (0.7, 2.0);
     let mechanism = hanging(&[(length, mass), (length, mass)]).build().expect("valid");
-    let modes = linearise(&mechanism, 0.0, &at_rest(&[0.0, 0.0], 2)).expect("at rest").modes().expect("regular");
+    let modes = linearise(&mechanism, 0.0, &at_rest(&[0.0, 0.0], 2))
+        .expect("at rest")
+        .modes()
+        .expect("regular");
     assert_eq!(modes.len(), 2);
     for (mode, sign) in modes.iter().zip([-1.0, 1.0]) {
         let square = (2.0 + sign * 2.0_f64.sqrt()) * 9.81 / length;
@@ -54,8 +69,15 @@ fn a_double_pendulum() {
         assert!((ratio.re - (-sign * 2.0_f64.sqrt() - 1.0)).abs() < 1e-9, "{ratio}");
     }
     // Upright the upper bar falls: pairs of real eigenvalues.
-    let modes = linearise(&mechanism, 0.0, &at_rest(&[PI, 0.0], 2)).expect("at rest").modes().expect("regular");
-    let real: Vec<f64> = modes.iter().filter(|mode| mode.eigenvalue.im == 0.0).map(|mode| mode.eigenvalue.re).collect();
+    let modes = linearise(&mechanism, 0.0, &at_rest(&[PI, 0.0], 2))
+        .expect("at rest")
+        .modes()
+        .expect("regular");
+    let real: Vec<f64> = modes
+        .iter()
+        .filter(|mode| mode.eigenvalue.im == 0.0)
+        .map(|mode| mode.eigenvalue.re)
+        .collect();
     assert!(real.len() == 4 && real.iter().sum::<f64>().abs() < 1e-9, "{modes:?}");
 }
 
@@ -65,7 +87,12 @@ fn cantilever(n: usize, gravity: f64, relaxation_time: f64) -> (Mechanism, Secti
     let beam = divide(1.0, &section, &material, Division::Standard(n)).expect("a beam");
     let mut linkage = Linkage::new([0.0, 0.0, -gravity]);
     let link = linkage.flexible_link("b", &beam, Along::X);
-    linkage.joint("clamp", Joint::Fixed, Mount::at_origin(Linkage::GROUND), Mount::at_origin(link.elements[0]));
+    linkage.joint(
+        "clamp",
+        Joint::Fixed,
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link.elements[0]),
+    );
     (linkage.build().expect("valid"), section, material)
 }
 
@@ -75,15 +102,24 @@ fn a_cantilever_of_elements_approaches_the_beam_as_published() {
     for (n, published) in [(2, 6.08e-2), (4, 1.45e-2), (8, 3.60e-3)] {
         let (mechanism, section, material) = cantilever(n, 0.0, 0.0);
         let state = at_rest(&vec![0.0; 3 * n], 3 * n);
-        let modes = linearise(&mechanism, 0.0, &state).expect("at rest").modes().expect("regular");
+        let modes = linearise(&mechanism, 0.0, &state)
+            .expect("at rest")
+            .modes()
+            .expect("regular");
         assert_eq!(modes.len(), 3 * n);
-        let exact = bending_frequency(1.0, &section, &material, Axis::Y, Ends::ClampedFree, 1).expect("a mode") / (2.0 * PI);
+        let exact =
+            bending_frequency(1.0, &section, &material, Axis::Y, Ends::ClampedFree, 1).expect("a mode") / (2.0 * PI);
         for mode in &modes[..2] {
             let error = mode.frequency() / exact - 1.0;
             assert!((error / published - 1.0).abs() < 1e-2, "{n}: {error:e}");
         }
         // Two shapes, each its own.
-        let product: f64 = modes[0].shape.iter().zip(&modes[1].shape).map(|(a, b)| a.re * b.re).sum();
+        let product: f64 = modes[0]
+            .shape
+            .iter()
+            .zip(&modes[1].shape)
+            .map(|(a, b)| a.re * b.re)
+            .sum();
         let size = |k: usize| modes[k].shape.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
         assert!(product.abs() < 0.99 * size(0) * size(1));
     }
@@ -93,7 +129,10 @@ fn a_cantilever_of_elements_approaches_the_beam_as_published() {
 fn damping_of_the_material_grows_with_the_frequency() {
     let relaxation_time = 1e-4;
     let (mechanism, _, _) = cantilever(3, 0.0, relaxation_time);
-    let modes = linearise(&mechanism, 0.0, &at_rest(&[0.0; 9], 9)).expect("at rest").modes().expect("regular");
+    let modes = linearise(&mechanism, 0.0, &at_rest(&[0.0; 9], 9))
+        .expect("at rest")
+        .modes()
+        .expect("regular");
     // D = tau K: the ratio is tau omega/2 for every mode.
     let slow: Vec<_> = modes.iter().filter(|mode| mode.eigenvalue.im > 0.0).collect();
     assert!(slow.len() > 3);
@@ -110,7 +149,10 @@ fn a_sagged_cantilever_vibrates_like_a_straight_one() {
     let (heavy, _, _) = cantilever(4, 9.81, 0.0);
     let sagged = equilibrium(&heavy, &[0.0; 12], &Settings::default()).expect("sags");
     let frequencies = |mechanism: &Mechanism, q: &[f64]| -> Vec<f64> {
-        let modes = linearise(mechanism, 0.0, &at_rest(q, 12)).expect("at rest").modes().expect("regular");
+        let modes = linearise(mechanism, 0.0, &at_rest(q, 12))
+            .expect("at rest")
+            .modes()
+            .expect("regular");
         modes.iter().map(|mode| mode.frequency()).collect()
     };
     let (one, other) = (frequencies(&straight, &[0.0; 12]), frequencies(&heavy, &sagged.q));
@@ -130,7 +172,9 @@ fn written_out(mechanism: &Mechanism, q: &[f64], lambda: &[f64], tangent: &DMatr
             let mut at = q.to_vec();
             system.tree().displace(&mut at, (tangent.column(k) * by).as_slice());
             let (mut work, mut terms) = (Workspace::new(system), MotionTerms::new(system));
-            system.write_terms(&Instant::new(0.0, &at, &vec![0.0; n]), &mut work, &mut terms).expect("no loads that refuse");
+            system
+                .write_terms(&Instant::new(0.0, &at, &vec![0.0; n]), &mut work, &mut terms)
+                .expect("no loads that refuse");
             let gradient = DMatrix::from_column_slice(n, lambda.len(), &terms.gradient);
             DVector::from_column_slice(&terms.force) + gradient * DVector::from_column_slice(lambda)
         })
@@ -142,13 +186,28 @@ fn written_out(mechanism: &Mechanism, q: &[f64], lambda: &[f64], tangent: &DMatr
 #[test]
 fn the_stiffness_holds_multipliers_times_second_derivatives() {
     let closing = Joint::revolute_z();
-    let four_bar = FourBar { lengths: [0.3, 1.0, 0.9, 1.1], plane: Pose::turn(Vector3::y_axis(), 0.4), closing };
-    let rssr = Rssr { crank: 0.1, rocker: 0.25, base: [0.3, 0.1, 0.2], rod: 0.45 };
+    let four_bar = FourBar {
+        lengths: [0.3, 1.0, 0.9, 1.1],
+        plane: Pose::turn(Vector3::y_axis(), 0.4),
+        closing,
+    };
+    let rssr = Rssr {
+        crank: 0.1,
+        rocker: 0.25,
+        base: [0.3, 0.1, 0.2],
+        rod: 0.45,
+    };
     let phi = rssr.rocker_angles(0.5).expect("closes")[0];
     let [psi, tilt] = rssr.rod_angles(0.5, phi);
     let cases = [
-        (four_bar.linkage().build().expect("valid"), vec![("crank", 0.2), ("coupler", 0.7), ("rocker", 1.6)]),
-        (rssr.build(), vec![("theta", 0.5), ("rod.psi", psi), ("rod.theta", tilt), ("phi", phi)]),
+        (
+            four_bar.linkage().build().expect("valid"),
+            vec![("crank", 0.2), ("coupler", 0.7), ("rocker", 1.6)],
+        ),
+        (
+            rssr.build(),
+            vec![("theta", 0.5), ("rod.psi", psi), ("rod.theta", tilt), ("phi", phi)],
+        ),
     ];
     for (mechanism, guess) in cases {
         let start = Start {
@@ -172,13 +231,31 @@ fn the_stiffness_holds_multipliers_times_second_derivatives() {
 /// A mass on an arm whose hinge is carried round by a shaft about z.
 fn governor(inertia: f64, mass: f64, length: f64) -> Mechanism {
     let mut linkage = Linkage::new([0.0, 0.0, -9.81]);
-    let shaft = RigidInertia { mass: 1.0, com: Vector3::zeros(), about_com: Matrix3::identity() * inertia };
+    let shaft = RigidInertia {
+        mass: 1.0,
+        com: Vector3::zeros(),
+        about_com: Matrix3::identity() * inertia,
+    };
     let (shaft, arm) = (
         linkage.link("shaft", shaft),
-        linkage.link("arm", RigidInertia { mass, com: Vector3::new(0.0, 0.0, -length), about_com: Matrix3::zeros() }),
+        linkage.link(
+            "arm",
+            RigidInertia {
+                mass,
+                com: Vector3::new(0.0, 0.0, -length),
+                about_com: Matrix3::zeros(),
+            },
+        ),
     );
-    linkage.joint("spin", Joint::revolute_z(), Mount::at_origin(Linkage::GROUND), Mount::at_origin(shaft));
-    let hinge = Joint::Revolute { axis: Vector3::y_axis() };
+    linkage.joint(
+        "spin",
+        Joint::revolute_z(),
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(shaft),
+    );
+    let hinge = Joint::Revolute {
+        axis: Vector3::y_axis(),
+    };
     linkage.joint("arm", hinge, Mount::at_origin(shaft), Mount::at_origin(arm));
     linkage.build().expect("valid")
 }
@@ -189,21 +266,34 @@ fn a_flyball_governor_swings_about_its_steady_spin() {
     let mechanism = governor(j, m, l);
     let cosine = 9.81 / (l * spin * spin);
     let sine = (1.0 - cosine * cosine).sqrt();
-    let state = State { q: vec![0.3, cosine.acos()], v: vec![spin, 0.0] };
+    let state = State {
+        q: vec![0.3, cosine.acos()],
+        v: vec![spin, 0.0],
+    };
     let found = linearise(&mechanism, 0.0, &state).expect("regular");
     assert!(found.rates.iter().all(|a| a.abs() < 1e-12), "steady: {:?}", found.rates);
     let modes = found.modes().expect("regular");
     // By the effective potential at constant momentum; the spin itself leaves two zeros.
     let square = (spin * sine).powi(2) * (1.0 + 4.0 * m * l * l * cosine * cosine / (j + m * l * l * sine * sine));
     let swing = modes.last().expect("three modes");
-    assert!((swing.eigenvalue.im / square.sqrt() - 1.0).abs() < 1e-8 && swing.eigenvalue.re.abs() < 1e-7, "{modes:?}");
-    assert!(modes[..modes.len() - 1].iter().all(|mode| mode.eigenvalue.norm() < 1e-4));
+    assert!(
+        (swing.eigenvalue.im / square.sqrt() - 1.0).abs() < 1e-8 && swing.eigenvalue.re.abs() < 1e-7,
+        "{modes:?}"
+    );
+    assert!(
+        modes[..modes.len() - 1]
+            .iter()
+            .all(|mode| mode.eigenvalue.norm() < 1e-4)
+    );
 }
 
 #[test]
 fn a_loop_with_friction_in_motion_has_the_derivatives_of_its_accelerations() {
     for friction in [false, true] {
-        let scene = rsrrr(&Rsrrr { friction, friction_scale: 1.0 });
+        let scene = rsrrr(&Rsrrr {
+            friction,
+            friction_scale: 1.0,
+        });
         let mechanism = scene.linkage.build().expect("valid");
         let at = |angle: f64, speed: f64| {
             let mut start = scene.start.clone();
@@ -214,7 +304,10 @@ fn a_loop_with_friction_in_motion_has_the_derivatives_of_its_accelerations() {
         let state = at(0.3, 2.0);
         let found = linearise(&mechanism, 1.0, &state).expect("regular");
         assert_eq!(found.independent.len(), 1);
-        let own = mechanism.coordinate_names().position(|name| *name == *found.independent[0]).expect("a turn");
+        let own = mechanism
+            .coordinate_names()
+            .position(|name| *name == *found.independent[0])
+            .expect("a turn");
         let rate = |angle: f64, speed: f64| {
             let state = at(0.3 + angle, 2.0 + speed);
             let mut simulation = Simulation::new(&mechanism);
@@ -236,15 +329,36 @@ fn a_loop_with_friction_in_motion_has_the_derivatives_of_its_accelerations() {
 #[test]
 fn ball_joints_with_quaternions_swing_about_rest_only() {
     let mut linkage = Linkage::new([0.0, 0.0, -9.81]);
-    let rod = RigidInertia { mass: 2.0, com: Vector3::new(0.0, 0.0, -0.5), about_com: Matrix3::identity() * 0.1 };
+    let rod = RigidInertia {
+        mass: 2.0,
+        com: Vector3::new(0.0, 0.0, -0.5),
+        about_com: Matrix3::identity() * 0.1,
+    };
     let link = linkage.link("bob", rod);
-    linkage.joint("ball", Joint::Spherical, Mount::at_origin(Linkage::GROUND), Mount::at_origin(link));
+    linkage.joint(
+        "ball",
+        Joint::Spherical,
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link),
+    );
     let mechanism = linkage.build().expect("valid");
     let q = mechanism.system().tree().neutral();
-    let modes = linearise(&mechanism, 0.0, &at_rest(&q, 3)).expect("at rest").modes().expect("regular");
+    let modes = linearise(&mechanism, 0.0, &at_rest(&q, 3))
+        .expect("at rest")
+        .modes()
+        .expect("regular");
     let square: f64 = 2.0 * 9.81 * 0.5 / (0.1 + 2.0 * 0.25);
-    let swings = modes.iter().filter(|mode| (mode.eigenvalue.im / square.sqrt() - 1.0).abs() < 1e-9).count();
+    let swings = modes
+        .iter()
+        .filter(|mode| (mode.eigenvalue.im / square.sqrt() - 1.0).abs() < 1e-9)
+        .count();
     assert_eq!(swings, 2, "{modes:?}");
-    let moving = State { q, v: vec![1.0, 0.0, 0.0] };
-    assert!(matches!(linearise(&mechanism, 0.0, &moving), Err(AnalysisError::Quaternion { .. })));
+    let moving = State {
+        q,
+        v: vec![1.0, 0.0, 0.0],
+    };
+    assert!(matches!(
+        linearise(&mechanism, 0.0, &moving),
+        Err(AnalysisError::Quaternion { .. })
+    ));
 }

@@ -13,14 +13,22 @@ fn counts(mechanism: &Mechanism, q: &[f64]) -> (isize, usize, usize, usize) {
     let found = mobility(mechanism, q).expect("a closed position");
     assert_eq!(found.independent.len(), found.freedoms);
     assert_eq!(found.redundant.len(), found.equations - found.rank);
-    assert!(found.rest < 1e-3 * found.weakest, "{:e} {:e}", found.rest, found.weakest);
+    assert!(
+        found.rest < 1e-3 * found.weakest,
+        "{:e} {:e}",
+        found.rest,
+        found.weakest
+    );
     assert!(found.redundant.iter().all(|row| row.measure < 1e-12));
     (found.counted, found.freedoms, found.finite, found.general)
 }
 
 fn closed(mechanism: &Mechanism, positions: &[(&str, f64)], held: &[&str]) -> Vec<f64> {
     let start = Start {
-        positions: positions.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+        positions: positions
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
         held: held.iter().map(|name| (*name).to_owned()).collect(),
         speeds: Vec::new(),
     };
@@ -34,9 +42,17 @@ fn four_bars_have_one_freedom_however_they_are_closed() {
         (Joint::Spherical, 0, vec!["pin.fz"]),
     ] {
         let plane = Pose::identity();
-        let four_bar = FourBar { lengths: [0.3, 1.0, 0.9, 1.1], plane, closing };
+        let four_bar = FourBar {
+            lengths: [0.3, 1.0, 0.9, 1.1],
+            plane,
+            closing,
+        };
         let mechanism = four_bar.linkage().build().expect("valid");
-        let q = closed(&mechanism, &[("crank", 0.4), ("coupler", 0.5), ("rocker", 1.6)], &["crank"]);
+        let q = closed(
+            &mechanism,
+            &[("crank", 0.4), ("coupler", 0.5), ("rocker", 1.6)],
+            &["crank"],
+        );
         // A planar loop moves in its plane whatever its dimensions are.
         assert_eq!(counts(&mechanism, &q), (counted, 1, 1, 1));
         let found = mobility(&mechanism, &q).expect("closed");
@@ -61,7 +77,11 @@ fn published_linkages_have_one_freedom() {
     assert_eq!(counts(&mechanism, &state.q), (1, 1, 1, 1));
 
     // Each of three springy elements adds three freedoms.
-    let scene = rsup(&Rsup { flexible: Some(3), ..Rsup::default() }).expect("a variant");
+    let scene = rsup(&Rsup {
+        flexible: Some(3),
+        ..Rsup::default()
+    })
+    .expect("a variant");
     let mechanism = scene.linkage.build().expect("valid");
     let (state, _) = mechanism.assemble(&scene.start).expect("closes");
     assert_eq!(counts(&mechanism, &state.q).1, 10);
@@ -98,14 +118,22 @@ fn combinations_make_up_the_rows_that_they_replace() {
     let mut positions = linkdyn_kinematics::Positions::new(system.tree());
     system.tree().positions(&q, &mut positions);
     let gradient = linkdyn_kinematics::assembly::gradient(system.tree(), system.closures(), &positions);
-    let row = |name: &str| ["fx", "fy", "fz", "n1", "n2"].iter().position(|c| *c == name).expect("a component");
+    let row = |name: &str| {
+        ["fx", "fy", "fz", "n1", "n2"]
+            .iter()
+            .position(|c| *c == name)
+            .expect("a component")
+    };
     for redundant in &found.redundant {
         assert_eq!(redundant.row.cut, "th4");
         let mut left = gradient.row(row(&redundant.row.component)).into_owned();
         for (other, factor) in &redundant.combination {
             left -= gradient.row(row(&other.component)) * *factor;
         }
-        assert!(left.amax() < 1e-12 && !redundant.combination.is_empty(), "{redundant:?}");
+        assert!(
+            left.amax() < 1e-12 && !redundant.combination.is_empty(),
+            "{redundant:?}"
+        );
     }
 }
 
@@ -114,10 +142,25 @@ fn stretched(distance: f64) -> Mechanism {
     let mut linkage = Linkage::new([0.0; 3]);
     let rod = linkdyn_dynamics::RigidInertia::solid_cylinder(7850.0, 0.02, 1.0, &Vector3::x());
     let (one, two) = (linkage.link("one", rod), linkage.link("two", rod));
-    linkage.joint("a", Joint::revolute_z(), Mount::at_origin(Linkage::GROUND), Mount::at_origin(one));
-    linkage.joint("b", Joint::revolute_z(), Mount::at(one, [1.0, 0.0, 0.0]), Mount::at_origin(two));
+    linkage.joint(
+        "a",
+        Joint::revolute_z(),
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(one),
+    );
+    linkage.joint(
+        "b",
+        Joint::revolute_z(),
+        Mount::at(one, [1.0, 0.0, 0.0]),
+        Mount::at_origin(two),
+    );
     let end = Mount::at(two, [1.0, 0.0, 0.0]);
-    linkage.cut("pin", Joint::revolute_z(), end, Mount::at(Linkage::GROUND, [distance, 0.0, 0.0]));
+    linkage.cut(
+        "pin",
+        Joint::revolute_z(),
+        end,
+        Mount::at(Linkage::GROUND, [distance, 0.0, 0.0]),
+    );
     linkage.build().expect("valid")
 }
 
@@ -133,18 +176,36 @@ fn a_structure_that_only_shakes_has_no_finite_mobility() {
 fn where_branches_meet_more_seems_to_move_than_does() {
     // A parallelogram laid flat.
     let plane = Pose::identity();
-    let four_bar = FourBar { lengths: [0.5, 1.0, 0.5, 1.0], plane, closing: Joint::revolute_z() };
+    let four_bar = FourBar {
+        lengths: [0.5, 1.0, 0.5, 1.0],
+        plane,
+        closing: Joint::revolute_z(),
+    };
     let mechanism = four_bar.linkage().build().expect("valid");
     assert_eq!(counts(&mechanism, &[0.0, 0.0, 0.0]), (-2, 2, 1, 1));
-    let q = closed(&mechanism, &[("crank", 1.0), ("coupler", -1.0), ("rocker", 1.0)], &["crank"]);
+    let q = closed(
+        &mechanism,
+        &[("crank", 1.0), ("coupler", -1.0), ("rocker", 1.0)],
+        &["crank"],
+    );
     assert_eq!(counts(&mechanism, &q), (-2, 1, 1, 1));
 }
 
 #[test]
 fn positions_that_do_not_fit_are_refused() {
     let mechanism = stretched(1.0);
-    assert!(matches!(mobility(&mechanism, &[0.0]), Err(AnalysisError::Length { found: 1, expected: 2, .. })));
-    assert!(matches!(mobility(&mechanism, &[f64::NAN, 0.0]), Err(AnalysisError::Number { .. })));
+    assert!(matches!(
+        mobility(&mechanism, &[0.0]),
+        Err(AnalysisError::Length {
+            found: 1,
+            expected: 2,
+            ..
+        })
+    ));
+    assert!(matches!(
+        mobility(&mechanism, &[f64::NAN, 0.0]),
+        Err(AnalysisError::Number { .. })
+    ));
     match mobility(&mechanism, &[0.0, PI]) {
         Err(AnalysisError::Open { residual, .. }) => assert!((residual - 1.0).abs() < 1e-12),
         other => panic!("{other:?}"),

@@ -12,7 +12,10 @@ use std::f64::consts::PI;
 
 fn closed(mechanism: &Mechanism, positions: &[(&str, f64)], held: &str) -> Vec<f64> {
     let start = Start {
-        positions: positions.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+        positions: positions
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
         held: vec![held.to_owned()],
         speeds: Vec::new(),
     };
@@ -27,7 +30,14 @@ fn apart(a: f64, b: f64) -> f64 {
 
 fn four_bar(lengths: [f64; 4]) -> Mechanism {
     let (plane, closing) = (Pose::identity(), Joint::revolute_z());
-    FourBar { lengths, plane, closing }.linkage().build().expect("valid")
+    FourBar {
+        lengths,
+        plane,
+        closing,
+    }
+    .linkage()
+    .build()
+    .expect("valid")
 }
 
 /// Angles of coupler (against the crank) and rocker of a four-bar, closed with the rocker above; none where it cannot be.
@@ -48,8 +58,18 @@ fn assert_derivatives(path: &Path, spacing: f64, tolerance: f64) {
             let first = (8.0 * (d.q[i] - b.q[i]) - (e.q[i] - a.q[i])) / (12.0 * spacing);
             let second = (8.0 * (d.v[i] - b.v[i]) - (e.v[i] - a.v[i])) / (12.0 * spacing);
             let size = 1.0 + c.v[i].abs() + c.a[i].abs();
-            assert!((first - c.v[i]).abs() < tolerance * size, "{} {first} {}", c.share, c.v[i]);
-            assert!((second - c.a[i]).abs() < tolerance * size, "{} {second} {}", c.share, c.a[i]);
+            assert!(
+                (first - c.v[i]).abs() < tolerance * size,
+                "{} {first} {}",
+                c.share,
+                c.v[i]
+            );
+            assert!(
+                (second - c.a[i]).abs() < tolerance * size,
+                "{} {second} {}",
+                c.share,
+                c.a[i]
+            );
         }
     }
 }
@@ -59,13 +79,20 @@ fn a_four_bar_goes_round_as_in_closed_form() {
     let lengths = [0.3, 1.0, 0.9, 1.1];
     let mechanism = four_bar(lengths);
     let (coupler, rocker) = by_hand(lengths, 0.2).expect("Grashof");
-    let q = closed(&mechanism, &[("crank", 0.2), ("coupler", coupler), ("rocker", rocker)], "crank");
+    let q = closed(
+        &mechanism,
+        &[("crank", 0.2), ("coupler", coupler), ("rocker", rocker)],
+        "crank",
+    );
     let parts = 720;
     let path = positions(&mechanism, &q, &Sweep::new("crank", 0.2 + 2.0 * PI, parts)).expect("turns fully");
     assert!(path.limit.is_none() && path.rows.len() == parts + 1);
     for row in &path.rows {
         let (coupler, rocker) = by_hand(lengths, row.q[0]).expect("Grashof");
-        assert!(apart(row.q[1], coupler) < 1e-13 && apart(row.q[2], rocker) < 1e-13, "{row:?}");
+        assert!(
+            apart(row.q[1], coupler) < 1e-13 && apart(row.q[2], rocker) < 1e-13,
+            "{row:?}"
+        );
         assert!(row.v[0] == 1.0 && row.a[0] == 0.0);
     }
     // Fourth order in steps of 9e-3.
@@ -75,12 +102,21 @@ fn a_four_bar_goes_round_as_in_closed_form() {
 
 #[test]
 fn an_rssr_goes_round_on_both_branches_as_in_closed_form() {
-    let rssr = Rssr { crank: 0.1, rocker: 0.25, base: [0.3, 0.1, 0.2], rod: 0.45 };
+    let rssr = Rssr {
+        crank: 0.1,
+        rocker: 0.25,
+        base: [0.3, 0.1, 0.2],
+        rod: 0.45,
+    };
     let mechanism = rssr.build();
     for branch in 0..2 {
         let phi = rssr.rocker_angles(0.0).expect("a full turn")[branch];
         let [psi, tilt] = rssr.rod_angles(0.0, phi);
-        let q = closed(&mechanism, &[("theta", 0.0), ("rod.psi", psi), ("rod.theta", tilt), ("phi", phi)], "theta");
+        let q = closed(
+            &mechanism,
+            &[("theta", 0.0), ("rod.psi", psi), ("rod.theta", tilt), ("phi", phi)],
+            "theta",
+        );
         let path = positions(&mechanism, &q, &Sweep::new("theta", 2.0 * PI, 360)).expect("turns fully");
         assert!(path.limit.is_none());
         for row in &path.rows {
@@ -93,20 +129,36 @@ fn an_rssr_goes_round_on_both_branches_as_in_closed_form() {
 
 #[test]
 fn an_rssr_ends_at_its_locking_angle() {
-    let rssr = Rssr { crank: 0.1, rocker: 0.25, base: [0.4, 0.1, 0.2], rod: 0.5 };
+    let rssr = Rssr {
+        crank: 0.1,
+        rocker: 0.25,
+        base: [0.4, 0.1, 0.2],
+        rod: 0.5,
+    };
     let mechanism = rssr.build();
     // Published locking angle.
     let end = 171.663_033_639_726_4_f64.to_radians();
     for branch in 0..2 {
         let phi = rssr.rocker_angles(1.0).expect("closes")[branch];
         let [psi, tilt] = rssr.rod_angles(1.0, phi);
-        let q = closed(&mechanism, &[("theta", 1.0), ("rod.psi", psi), ("rod.theta", tilt), ("phi", phi)], "theta");
+        let q = closed(
+            &mechanism,
+            &[("theta", 1.0), ("rod.psi", psi), ("rod.theta", tilt), ("phi", phi)],
+            "theta",
+        );
         let path = positions(&mechanism, &q, &Sweep::new("theta", 2.0 * PI, 64)).expect("a start");
         let limit = path.limit.expect("it locks");
-        assert!((limit.driven[0] - end).abs() < 1e-8, "{} instead of {end}", limit.driven[0]);
+        assert!(
+            (limit.driven[0] - end).abs() < 1e-8,
+            "{} instead of {end}",
+            limit.driven[0]
+        );
         assert!(limit.measure < 1e-3, "{limit:?}");
         // At the limit the rocker turns about its pin without end, and the rod with it.
-        assert!(limit.coordinate == "phi" || limit.coordinate.starts_with("rod."), "{limit:?}");
+        assert!(
+            limit.coordinate == "phi" || limit.coordinate.starts_with("rod."),
+            "{limit:?}"
+        );
         assert!(path.rows.iter().all(|row| row.q[0] <= end) && path.rows.len() > 15);
     }
 }
@@ -118,10 +170,18 @@ fn a_four_bar_that_rocks_ends_where_coupler_and_rocker_are_in_line() {
     let [a, b, c, d] = lengths;
     let end = ((a * a + d * d - (b + c) * (b + c)) / (2.0 * a * d)).acos();
     let (coupler, rocker) = by_hand(lengths, 1.0).expect("closes");
-    let q = closed(&mechanism, &[("crank", 1.0), ("coupler", coupler), ("rocker", rocker)], "crank");
+    let q = closed(
+        &mechanism,
+        &[("crank", 1.0), ("coupler", coupler), ("rocker", rocker)],
+        "crank",
+    );
     let path = positions(&mechanism, &q, &Sweep::new("crank", 3.0, 10)).expect("a start");
     let limit = path.limit.expect("it ends");
-    assert!((limit.driven[0] - end).abs() < 1e-8, "{} instead of {end}", limit.driven[0]);
+    assert!(
+        (limit.driven[0] - end).abs() < 1e-8,
+        "{} instead of {end}",
+        limit.driven[0]
+    );
     assert_eq!(path.rows.len(), 1 + ((end - 1.0) / 0.2) as usize);
     assert!(limit.share > 0.0 && limit.share < 1.0 && limit.value.is_finite());
 }
@@ -147,7 +207,10 @@ fn redundant_loops_are_followed_too() {
     assert!(path.limit.is_none());
     for row in &path.rows {
         let (a, b) = (row.q[0].sin(), row.q[1].sin());
-        assert!((a.abs() + -b.abs() - a.abs() * b.abs()).abs() < 1e-12 || (a + b + a * b).abs() < 1e-12, "{row:?}");
+        assert!(
+            (a.abs() + -b.abs() - a.abs() * b.abs()).abs() < 1e-12 || (a + b + a * b).abs() < 1e-12,
+            "{row:?}"
+        );
     }
 }
 
@@ -156,19 +219,48 @@ fn drives_that_do_not_determine_the_motion_are_refused() {
     let lengths = [0.3, 1.0, 0.9, 1.1];
     let mechanism = four_bar(lengths);
     let (coupler, rocker) = by_hand(lengths, 0.2).expect("Grashof");
-    let q = closed(&mechanism, &[("crank", 0.2), ("coupler", coupler), ("rocker", rocker)], "crank");
-    let one = |name: &str, to: f64| Driven { coordinate: name.into(), to, speed: 1.0, acceleration: 0.0 };
-    let sweep = |driven: Vec<Driven>| Sweep { driven, parts: 2, largest_step: 0.1 };
+    let q = closed(
+        &mechanism,
+        &[("crank", 0.2), ("coupler", coupler), ("rocker", rocker)],
+        "crank",
+    );
+    let one = |name: &str, to: f64| Driven {
+        coordinate: name.into(),
+        to,
+        speed: 1.0,
+        acceleration: 0.0,
+    };
+    let sweep = |driven: Vec<Driven>| Sweep {
+        driven,
+        parts: 2,
+        largest_step: 0.1,
+    };
     let both = positions(&mechanism, &q, &sweep(vec![one("crank", 1.0), one("rocker", 1.0)]));
-    assert!(matches!(both, Err(AnalysisError::Overdetermined { freedoms: 1, .. })), "{both:?}");
-    assert!(matches!(positions(&mechanism, &q, &sweep(vec![])), Err(AnalysisError::Number { .. })));
-    assert!(matches!(positions(&mechanism, &q, &sweep(vec![one("crank", f64::NAN)])), Err(AnalysisError::Number { .. })));
+    assert!(
+        matches!(both, Err(AnalysisError::Overdetermined { freedoms: 1, .. })),
+        "{both:?}"
+    );
+    assert!(matches!(
+        positions(&mechanism, &q, &sweep(vec![])),
+        Err(AnalysisError::Number { .. })
+    ));
+    assert!(matches!(
+        positions(&mechanism, &q, &sweep(vec![one("crank", f64::NAN)])),
+        Err(AnalysisError::Number { .. })
+    ));
     let twice = positions(&mechanism, &q, &sweep(vec![one("crank", 1.0), one("crank", 1.0)]));
     assert!(matches!(twice, Err(AnalysisError::Number { .. })), "{twice:?}");
-    assert!(matches!(positions(&mechanism, &q, &sweep(vec![one("cranc", 1.0)])), Err(AnalysisError::Start(_))));
-    let chain = linkdyn_tests::linkages::hanging(&[(1.0, 1.0), (1.0, 1.0)]).build().expect("valid");
+    assert!(matches!(
+        positions(&mechanism, &q, &sweep(vec![one("cranc", 1.0)])),
+        Err(AnalysisError::Start(_))
+    ));
+    let chain = linkdyn_tests::linkages::hanging(&[(1.0, 1.0), (1.0, 1.0)])
+        .build()
+        .expect("valid");
     match positions(&chain, &[0.0, 0.0], &sweep(vec![one("a0", 1.0)])) {
-        Err(AnalysisError::Undetermined { driven, free }) => assert_eq!((driven.as_str(), free.as_str()), ("`a0`", "`a1`")),
+        Err(AnalysisError::Undetermined { driven, free }) => {
+            assert_eq!((driven.as_str(), free.as_str()), ("`a0`", "`a1`"))
+        }
         other => panic!("{other:?}"),
     }
 }

@@ -200,7 +200,12 @@ impl Blueprint {
         }
         for (k, cut) in self.cuts.iter().enumerate() {
             let mount = |(part, pose): (Option<usize>, Pose)| Mount::with_pose(link(part), pose);
-            linkage.cut(&format!("c{k}"), cut.joint, mount(cut.predecessor), mount(cut.successor));
+            linkage.cut(
+                &format!("c{k}"),
+                cut.joint,
+                mount(cut.predecessor),
+                mount(cut.successor),
+            );
         }
         (linkage, coordinates)
     }

@@ -204,7 +204,14 @@ pub fn bricard() -> Mechanism {
         let (slender, round) = (1.01 / 12.0, 0.02 / 12.0);
         let about_com = Matrix3::identity() * slender + arm * arm.transpose() * (round - slender);
         let com = arm * 0.5;
-        let link = linkage.link(&format!("rod{k}"), RigidInertia { mass: 1.0, com, about_com });
+        let link = linkage.link(
+            &format!("rod{k}"),
+            RigidInertia {
+                mass: 1.0,
+                com,
+                about_com,
+            },
+        );
         linkage.joint(
             &format!("t{k}"),
             Joint::Revolute { axis: axes[k] },

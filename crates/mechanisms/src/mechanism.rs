@@ -226,7 +226,8 @@ impl Mechanism {
         let tree = self.system.tree();
         tree.joints().iter().find_map(|(link, _)| {
             let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
-            v.contains(&speed).then(|| q.start + (speed - v.start) + (q.len() - v.len()))
+            v.contains(&speed)
+                .then(|| q.start + (speed - v.start) + (q.len() - v.len()))
         })
     }
 }

@@ -106,7 +106,9 @@ impl<'a> Balance<'a> {
     }
 
     fn names(&self, speeds: &[usize]) -> String {
-        let names = speeds.iter().map(|&speed| format!("`{}`", self.mechanism.speeds[speed]));
+        let names = speeds
+            .iter()
+            .map(|&speed| format!("`{}`", self.mechanism.speeds[speed]));
         names.collect::<Vec<_>>().join(", ")
     }
 
@@ -123,7 +125,12 @@ impl<'a> Balance<'a> {
         let gradient = self.gradient(q).select_rows(&self.rows);
         let of_independent = gradient.select_columns(&self.independent);
         let factors = gradient.select_columns(&self.dependent).lu();
-        let shares = factors.solve(&of_independent).ok_or_else(|| self.no_motion())?;
+        // Nothing to solve for where nothing depends: nalgebra 0.35 overflows on an empty matrix.
+        let solve = |rhs: DMatrix<f64>| match rhs.is_empty() {
+            true => Some(rhs),
+            false => factors.solve(&rhs),
+        };
+        let shares = solve(of_independent.clone()).ok_or_else(|| self.no_motion())?;
         let mut tangent = DMatrix::zeros(n, self.independent.len());
         for (k, &speed) in self.independent.iter().enumerate() {
             tangent[(speed, k)] = 1.0;
@@ -133,13 +140,12 @@ impl<'a> Balance<'a> {
         }
         let v = &tangent * DVector::from_column_slice(rates);
         let mut a = DVector::zeros(n);
-        let second = DVector::from_column_slice(second);
+        let second = DMatrix::from_column_slice(second.len(), 1, second);
         let system = self.mechanism.system();
         let written = system.write_terms(&Instant::new(t, q, v.as_slice()), &mut self.work, &mut self.terms);
         written.map_err(|cause| self.mechanism.explain(cause))?;
-        let gamma = DVector::from_fn(self.rows.len(), |i, _| self.terms.gamma[self.rows[i]]);
-        let rhs = gamma + of_independent * &second;
-        let followers = factors.solve(&rhs).ok_or_else(|| self.no_motion())?;
+        let gamma = DMatrix::from_fn(self.rows.len(), 1, |i, _| self.terms.gamma[self.rows[i]]);
+        let followers = solve(gamma + of_independent * &second).ok_or_else(|| self.no_motion())?;
         for (k, &speed) in self.independent.iter().enumerate() {
             a[speed] = second[k];
         }
@@ -187,7 +193,11 @@ impl<'a> Balance<'a> {
         let speeds: Vec<usize> = system.reaction_load_speeds().collect();
         if speeds.is_empty() {
             let friction = Vec::new();
-            return Ok(Needed { forces, multipliers, friction });
+            return Ok(Needed {
+                forces,
+                multipliers,
+                friction,
+            });
         }
         let units: Vec<_> = speeds
             .iter()
@@ -212,7 +222,10 @@ impl<'a> Balance<'a> {
     fn seen(&mut self, a: &DVector<f64>, multipliers: &DVector<f64>) -> Vec<Reaction> {
         let system = self.mechanism.system();
         system.reactions_for(a.as_slice(), multipliers.as_slice(), &mut self.work);
-        system.reaction_loads_with(&self.work).map(|(_, _, seen)| seen).collect()
+        system
+            .reaction_loads_with(&self.work)
+            .map(|(_, _, seen)| seen)
+            .collect()
     }
 
     /// Friction by Newton's method: for given accelerations reactions are affine functions of it, through the multipliers.
@@ -246,8 +259,8 @@ impl<'a> Balance<'a> {
                 open[j] = tau[j] + gain * capacity.value;
                 largest = largest.max((gain * capacity.value).abs());
                 for (k, change) in response.iter().enumerate() {
-                    let slope = capacity.gradient.force.dot(&change[j].force)
-                        + capacity.gradient.torque.dot(&change[j].torque);
+                    let slope =
+                        capacity.gradient.force.dot(&change[j].force) + capacity.gradient.torque.dot(&change[j].torque);
                     jacobian[(j, k)] += gain * slope;
                 }
             }
@@ -298,7 +311,9 @@ impl<'a> Balance<'a> {
         motion: (&[f64], &[f64]),
         tangent: &DMatrix<f64>,
     ) -> Result<DMatrix<f64>, AnalysisError> {
-        let columns: Result<Vec<_>, _> = (0..motion.0.len()).map(|k| self.slope(at, motion, tangent, (0, k))).collect();
+        let columns: Result<Vec<_>, _> = (0..motion.0.len())
+            .map(|k| self.slope(at, motion, tangent, (0, k)))
+            .collect();
         Ok(DMatrix::from_columns(&columns?))
     }
 
@@ -309,7 +324,9 @@ impl<'a> Balance<'a> {
         motion: (&[f64], &[f64]),
         tangent: &DMatrix<f64>,
     ) -> Result<DMatrix<f64>, AnalysisError> {
-        let columns: Result<Vec<_>, _> = (0..motion.0.len()).map(|k| self.slope(at, motion, tangent, (1, k))).collect();
+        let columns: Result<Vec<_>, _> = (0..motion.0.len())
+            .map(|k| self.slope(at, motion, tangent, (1, k)))
+            .collect();
         Ok(DMatrix::from_columns(&columns?))
     }
 

@@ -129,10 +129,20 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
     if !found.is_empty() && !isolated {
         let names = |wanted: bool| {
             let speeds = (0..held.len()).filter(|&speed| held[speed] == wanted);
-            speeds.map(|speed| format!("`{}`", mechanism.speeds[speed])).collect::<Vec<_>>().join(", ")
+            speeds
+                .map(|speed| format!("`{}`", mechanism.speeds[speed]))
+                .collect::<Vec<_>>()
+                .join(", ")
         };
-        let driven = if start.held.is_empty() { "nothing".to_owned() } else { names(true) };
-        return Err(AnalysisError::Undetermined { driven, free: names(false) });
+        let driven = if start.held.is_empty() {
+            "nothing".to_owned()
+        } else {
+            names(true)
+        };
+        return Err(AnalysisError::Undetermined {
+            driven,
+            free: names(false),
+        });
     }
     let positions: Vec<Closed> = found.into_iter().map(|(closed, _)| closed).collect();
     Ok(Branches {
@@ -185,9 +195,7 @@ fn size(mechanism: &Mechanism) -> f64 {
     let mut positions = Positions::new(tree);
     tree.positions(&tree.neutral(), &mut positions);
     let arms: f64 = positions.nodes().iter().map(|node| node.arm.norm()).sum();
-    let ends = |cut: &Closure| {
-        cut.predecessor().pose.origin.norm() + cut.successor().pose.origin.norm()
-    };
+    let ends = |cut: &Closure| cut.predecessor().pose.origin.norm() + cut.successor().pose.origin.norm();
     (arms + mechanism.centred.iter().map(ends).sum::<f64>()).max(1e-3)
 }
 

@@ -119,10 +119,17 @@ pub fn equilibrium(mechanism: &Mechanism, q: &[f64], settings: &Settings) -> Res
         worst = (rest.balance.independent[force.iamax()], force.amax());
         let newton = stiffness.clone().lu().solve(force);
         let tiny = newton.as_ref().is_some_and(|step| step.amax() <= STEP_TOLERANCE);
-        if force.amax() <= FORCE_TOLERANCE * rest.scale || (tiny && force.amax() <= 1e4 * FORCE_TOLERANCE * rest.scale) {
-            if settings.seek == Seek::Stable && spectrum.stability() == Stability::Unstable && iterations < settings.iterations {
+        if force.amax() <= FORCE_TOLERANCE * rest.scale || (tiny && force.amax() <= 1e4 * FORCE_TOLERANCE * rest.scale)
+        {
+            if settings.seek == Seek::Stable
+                && spectrum.stability() == Stability::Unstable
+                && iterations < settings.iterations
+            {
                 let push = &spectrum.falling * (PUSH / (&point.tangent * &spectrum.falling).amax());
-                if rest.go(&point.tangent, &push).is_ok_and(|q| q.is_some_and(|q| rest.take(q))) {
+                if rest
+                    .go(&point.tangent, &push)
+                    .is_ok_and(|q| q.is_some_and(|q| rest.take(q)))
+                {
                     continue;
                 }
             }
@@ -179,7 +186,8 @@ impl Rest<'_> {
 
     fn stiffness(&mut self, point: &Point) -> Result<DMatrix<f64>, AnalysisError> {
         let still = self.still();
-        self.balance.stiffness((self.time, &self.q), (&still, &still), &point.tangent)
+        self.balance
+            .stiffness((self.time, &self.q), (&still, &still), &point.tangent)
     }
 
     fn mass(&mut self) -> Result<DMatrix<f64>, AnalysisError> {
@@ -210,7 +218,11 @@ impl Rest<'_> {
         fine: impl Fn(&Point) -> bool,
     ) -> Result<bool, AnalysisError> {
         let length = (&point.tangent * step).amax();
-        let mut share = if length > LONGEST_STEP { LONGEST_STEP / length } else { 1.0 };
+        let mut share = if length > LONGEST_STEP {
+            LONGEST_STEP / length
+        } else {
+            1.0
+        };
         let shortest = share * SHORTEST_SHARE;
         while share >= shortest {
             if let Some(q) = self.go(&point.tangent, &(step * share))?
@@ -277,7 +289,10 @@ fn weight(mechanism: &Mechanism) -> f64 {
     let mass: f64 = system.inertias().iter().map(|inertia| inertia.mass).sum();
     let mut positions = Positions::new(system.tree());
     system.tree().positions(&system.tree().neutral(), &mut positions);
-    let size = positions.nodes().iter().fold(1.0, |s, node| f64::max(s, node.origin.amax()));
+    let size = positions
+        .nodes()
+        .iter()
+        .fold(1.0, |s, node| f64::max(s, node.origin.amax()));
     mass * system.gravity().norm() * size
 }
 
@@ -331,9 +346,16 @@ impl Spectrum {
     fn downhill(&self, force: &DVector<f64>) -> DVector<f64> {
         let (lowest, largest) = (self.lowest(), self.values.amax());
         let floor = INDIFFERENT * largest;
-        let shift = if lowest > floor { 0.0 } else { 2.0 * lowest.abs() + floor.max(f64::MIN_POSITIVE) };
+        let shift = if lowest > floor {
+            0.0
+        } else {
+            2.0 * lowest.abs() + floor.max(f64::MIN_POSITIVE)
+        };
         let mut shares = self.shapes.tr_mul(force);
-        shares.iter_mut().zip(&self.values).for_each(|(share, value)| *share /= value + shift);
+        shares
+            .iter_mut()
+            .zip(&self.values)
+            .for_each(|(share, value)| *share /= value + shift);
         &self.shapes * shares
     }
 }

@@ -35,7 +35,9 @@ pub enum AnalysisError {
         expected: &'static str,
     },
     /// The coordinates given do not close the loops.
-    #[error("the loops are open by {residual:e} at the coordinates given, more than {allowed:e}; assemble the mechanism first")]
+    #[error(
+        "the loops are open by {residual:e} at the coordinates given, more than {allowed:e}; assemble the mechanism first"
+    )]
     Open {
         /// Largest closure residual \[m, -\].
         residual: f64,

@@ -64,12 +64,20 @@ pub fn inverse_dynamics(
     for one in prescribed {
         for (what, value) in [("speed", one.speed), ("acceleration", one.acceleration)] {
             if !value.is_finite() {
-                return Err(number(format!("{what} of `{}`", one.coordinate), value, "a finite number"));
+                return Err(number(
+                    format!("{what} of `{}`", one.coordinate),
+                    value,
+                    "a finite number",
+                ));
             }
         }
         let (_, speed) = driven(mechanism, &one.coordinate)?;
         if speeds.contains(&speed) {
-            return Err(number(format!("times that `{}` is prescribed", one.coordinate), 2.0, "1"));
+            return Err(number(
+                format!("times that `{}` is prescribed", one.coordinate),
+                2.0,
+                "1",
+            ));
         }
         speeds.push(speed);
     }
@@ -90,7 +98,12 @@ pub fn inverse_dynamics(
     });
     Ok(Needs {
         reactions: reactions.collect(),
-        power: needed.forces.iter().zip(&rates).map(|(force, speed)| force * speed).sum(),
+        power: needed
+            .forces
+            .iter()
+            .zip(&rates)
+            .map(|(force, speed)| force * speed)
+            .sum(),
         drives: needed.forces.as_slice().to_vec(),
         v: moving.v.as_slice().to_vec(),
         a: moving.a.as_slice().to_vec(),

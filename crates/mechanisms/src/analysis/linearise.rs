@@ -95,7 +95,11 @@ impl Linearised {
     pub fn state_matrix(&self) -> Result<DMatrix<f64>, AnalysisError> {
         let n = self.independent.len();
         let factors = self.mass.clone().lu();
-        let by_mass = |matrix: &DMatrix<f64>| factors.solve(matrix).ok_or(AnalysisError::Eigenvalues("a freedom moves no mass"));
+        let by_mass = |matrix: &DMatrix<f64>| {
+            factors
+                .solve(matrix)
+                .ok_or(AnalysisError::Eigenvalues("a freedom moves no mass"))
+        };
         let mut a = DMatrix::zeros(2 * n, 2 * n);
         a.view_mut((0, n), (n, n)).fill_with_identity();
         a.view_mut((n, 0), (n, n)).copy_from(&-by_mass(&self.stiffness)?);

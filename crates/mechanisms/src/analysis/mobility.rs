@@ -138,7 +138,10 @@ pub fn mobility(mechanism: &Mechanism, q: &[f64]) -> Result<Mobility, AnalysisEr
         freedoms: n - chosen.rank(),
         finite,
         general: n - most,
-        independent: independent.iter().map(|&speed| mechanism.speeds[speed].clone()).collect(),
+        independent: independent
+            .iter()
+            .map(|&speed| mechanism.speeds[speed].clone())
+            .collect(),
         redundant: redundant(&here, &chosen, &row_names(mechanism)),
         weakest: chosen.weakest,
         rest: chosen.rest,
@@ -163,7 +166,8 @@ fn redundant(gradient: &DMatrix<f64>, chosen: &Elimination, names: &[LoopRow]) -
     let kept: Vec<usize> = chosen.pivots.iter().map(|&(row, _)| row).collect();
     let others: Vec<usize> = (0..gradient.nrows()).filter(|row| !kept.contains(row)).collect();
     // Relations between rows are the kernel of the transposed matrix.
-    let relations = Elimination::new(gradient.transpose(), |_, row| kept.contains(&row)).kernel(gradient.nrows(), &others);
+    let relations =
+        Elimination::new(gradient.transpose(), |_, row| kept.contains(&row)).kernel(gradient.nrows(), &others);
     let one = |(k, &row): (usize, &usize)| {
         let mut left = gradient.row(row).into_owned();
         let mut combination = Vec::new();

@@ -123,8 +123,14 @@ pub(super) fn general_modes(a: &DMatrix<f64>, tangent: &DMatrix<f64>) -> Result<
 
 /// A mode whose largest displacement is 1.
 fn mode(eigenvalue: Complex<f64>, shape: &DVector<Complex<f64>>) -> Mode {
-    let largest = shape.iter().fold(Complex::new(0.0, 0.0), |a, b| if b.norm() > a.norm() { *b } else { a });
-    let scale = if largest.norm() > 0.0 { largest } else { Complex::new(1.0, 0.0) };
+    let largest = shape
+        .iter()
+        .fold(Complex::new(0.0, 0.0), |a, b| if b.norm() > a.norm() { *b } else { a });
+    let scale = if largest.norm() > 0.0 {
+        largest
+    } else {
+        Complex::new(1.0, 0.0)
+    };
     Mode {
         eigenvalue,
         shape: shape.iter().map(|x| x / scale).collect(),

@@ -189,7 +189,11 @@ impl<'a> Follower<'a> {
             let (coordinate, speed) = driven(mechanism, &one.coordinate)?;
             for (what, value) in [("to", one.to), ("speed", one.speed), ("acceleration", one.acceleration)] {
                 if !value.is_finite() {
-                    return Err(number(format!("{what} of `{}`", one.coordinate), value, "a finite number"));
+                    return Err(number(
+                        format!("{what} of `{}`", one.coordinate),
+                        value,
+                        "a finite number",
+                    ));
                 }
             }
             if std::mem::replace(&mut held[speed], true) {
@@ -199,7 +203,12 @@ impl<'a> Follower<'a> {
             speeds.push(speed);
         }
         let from: Vec<f64> = coordinates.iter().map(|&coordinate| q[coordinate]).collect();
-        let span = sweep.driven.iter().zip(&from).map(|(one, from)| one.to - from).collect();
+        let span = sweep
+            .driven
+            .iter()
+            .zip(&from)
+            .map(|(one, from)| one.to - from)
+            .collect();
         let motion = sweep.driven.iter().map(|one| (one.speed, one.acceleration)).unzip();
         let mut follower = Self {
             balance: Balance::new(mechanism)?,
@@ -223,7 +232,13 @@ impl<'a> Follower<'a> {
 
     fn close(&self, guess: &[f64]) -> Result<assembly::Assembly, assembly::AssemblyError> {
         let system = self.mechanism.system();
-        assembly::assemble(system.tree(), system.closures(), guess, &self.held, &Settings::default())
+        assembly::assemble(
+            system.tree(),
+            system.closures(),
+            guess,
+            &self.held,
+            &Settings::default(),
+        )
     }
 
     /// Tries to go on by a share of the range, shorter where that is too far; the share gone, or nothing where a shorter step is needed.
@@ -240,20 +255,34 @@ impl<'a> Follower<'a> {
         let still = vec![0.0; self.speeds.len()];
         let tangent = self.balance.moving(0.0, &self.q, &self.span, &still)?.v;
         let length = tangent.amax();
-        let step = if length * wanted > self.largest_step { self.largest_step / length } else { wanted };
+        let step = if length * wanted > self.largest_step {
+            self.largest_step / length
+        } else {
+            wanted
+        };
         self.tried = step;
         // The last step of a row ends on it, to the last bit.
-        let share = if step == target - self.share { target } else { self.share + step };
+        let share = if step == target - self.share {
+            target
+        } else {
+            self.share + step
+        };
         let mut guess = self.q.clone();
         let predicted = &tangent * step;
-        self.mechanism.system().tree().displace(&mut guess, predicted.as_slice());
+        self.mechanism
+            .system()
+            .tree()
+            .displace(&mut guess, predicted.as_slice());
         for (k, &coordinate) in self.coordinates.iter().enumerate() {
             guess[coordinate] = self.from[k] + share * self.span[k];
         }
         let Ok(closed) = self.close(&guess) else {
             return Ok(None);
         };
-        let correction = guess.iter().zip(&closed.q).fold(0.0, |s, (a, b)| f64::max(s, (a - b).abs()));
+        let correction = guess
+            .iter()
+            .zip(&closed.q)
+            .fold(0.0, |s, (a, b)| f64::max(s, (a - b).abs()));
         let near = correction <= CORRECTION * predicted.amax() + ROUNDING;
         if !near || closed.branch != self.branch {
             return Ok(None);
