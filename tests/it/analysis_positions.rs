@@ -3,10 +3,11 @@
 use linkdyn_kinematics::{Joint, Pose};
 use linkdyn_mechanisms::analysis::positions::{Driven, Path, Sweep};
 use linkdyn_mechanisms::analysis::{AnalysisError, positions};
-use linkdyn_mechanisms::{Mechanism, Start};
+use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Start};
 use linkdyn_tests::linkages::{FourBar, Rssr, bennett, bricard};
 use linkdyn_tests::numbers::difference;
 use linkdyn_tests::strategies;
+use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -184,6 +185,89 @@ fn a_four_bar_that_rocks_ends_where_coupler_and_rocker_are_in_line() {
     );
     assert_eq!(path.rows.len(), 1 + ((end - 1.0) / 0.2) as usize);
     assert!(limit.share > 0.0 && limit.share < 1.0 && limit.value.is_finite());
+}
+
+/// The spatial slider-crank of the IFToMM library: crank about x at (0, 0.1, 0.12) m, ball joint to the rod, universal joint to a slide
+/// along x.
+fn spatial_slider_crank() -> Mechanism {
+    let body = |mass: f64, moment: f64| linkdyn_dynamics::RigidInertia {
+        mass,
+        com: Vector3::zeros(),
+        about_com: Matrix3::identity() * moment,
+    };
+    let mut linkage = Linkage::new([0.0, 0.0, -9.81]);
+    let (crank, rod, slider) = (
+        linkage.link("crank", body(0.12, 1e-4)),
+        linkage.link("rod", body(0.5, 4e-3)),
+        linkage.link("slider", body(2.0, 1e-4)),
+    );
+    let x = Vector3::x_axis();
+    let ground = Linkage::GROUND;
+    linkage.joint(
+        "crank",
+        Joint::Revolute { axis: x },
+        Mount::at(ground, [0.0, 0.1, 0.12]),
+        Mount::at_origin(crank),
+    );
+    linkage.joint(
+        "x",
+        Joint::Prismatic { axis: x },
+        Mount::at_origin(ground),
+        Mount::at_origin(slider),
+    );
+    // The rod points from the slider along its own -z.
+    let cross = Joint::Universal {
+        first: x,
+        second: Vector3::y_axis(),
+    };
+    linkage.joint("rod", cross, Mount::at_origin(slider), Mount::at_origin(rod));
+    linkage.cut(
+        "B",
+        Joint::Spherical,
+        Mount::at(rod, [0.0, 0.0, 0.3]),
+        Mount::at(crank, [0.0, 0.0, 0.08]),
+    );
+    linkage.build().expect("valid")
+}
+
+#[test]
+fn a_spatial_slider_crank_has_the_positions_and_speeds_of_its_benchmark() {
+    let mechanism = spatial_slider_crank();
+    // From the slider at 0.2 m the rod leads to the crank's pin at (0, 0.1, 0.2) m.
+    let guess = [
+        ("crank", 0.0),
+        ("x", 0.2),
+        ("rod.psi", (-0.1_f64).atan2(0.2)),
+        ("rod.theta", -0.73),
+    ];
+    let q = closed(&mechanism, &guess, "crank");
+    assert!((q[1] - 0.2).abs() < 1e-13, "{q:?}");
+    let speed = 6.0;
+    let driven = vec![Driven {
+        coordinate: "crank".into(),
+        to: 2.0 * PI,
+        speed,
+        acceleration: 0.0,
+    }];
+    let sweep = Sweep {
+        driven,
+        parts: 360,
+        largest_step: 0.1,
+    };
+    let path = positions(&mechanism, &q, &sweep).expect("turns fully");
+    let (mut least, mut most) = (1.0_f64, 0.0_f64);
+    for row in &path.rows {
+        let (sine, cosine) = row.q[0].sin_cos();
+        let (y, z) = (0.1 - 0.08 * sine, 0.12 + 0.08 * cosine);
+        let x = (0.09 - y * y - z * z).sqrt();
+        // x x' = -(y y' + z z').
+        let x_rate = speed * 0.08 * (y * cosine + z * sine) / x;
+        assert!((row.q[1] - x).abs() < 1e-13, "{row:?} {x}");
+        assert!((row.v[1] - x_rate).abs() < 1e-12, "{row:?} {x_rate}");
+        (least, most) = (least.min(x), most.max(x));
+    }
+    // The stroke of the benchmark's page, to its five digits.
+    assert!((least - 0.18496).abs() < 1e-5 && (most - 0.29016).abs() < 1e-5);
 }
 
 #[test]
