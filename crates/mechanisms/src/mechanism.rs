@@ -94,6 +94,11 @@ impl Mechanism {
         self.coordinates.iter().map(String::as_str)
     }
 
+    /// Names of the speeds in the order of `v`; those of the coordinates wherever they are their rates.
+    pub fn speed_names(&self) -> impl Iterator<Item = &str> {
+        self.speeds.iter().map(String::as_str)
+    }
+
     /// Names of the joints of the tree, in the order of attachment.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
         self.joints.iter().map(|joint| joint.name.as_str())
