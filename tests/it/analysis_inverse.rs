@@ -1,17 +1,18 @@
 //! Inverse dynamics gives back what forward dynamics was driven with: torque, reactions, multipliers, friction.
 
-use linkdyn_dynamics::{Instant, MotionTerms, Workspace};
+use linkdyn_dynamics::{Instant, MotionTerms, RigidInertia, Workspace};
+use linkdyn_friction::{Exponential, JournalBearing, Surface};
 use linkdyn_kinematics::{Joint, Pose};
 use linkdyn_mechanisms::analysis::inverse_dynamics::Prescribed;
 use linkdyn_mechanisms::analysis::positions::{Driven, Sweep};
 use linkdyn_mechanisms::analysis::{AnalysisError, inverse_dynamics, mobility, positions};
 use linkdyn_mechanisms::catalogue::{Rsrrr, Rsup, rsrrr, rsup};
-use linkdyn_mechanisms::{Linkage, Observation, Simulation, Start, State};
+use linkdyn_mechanisms::{Linkage, Mount, Observation, Simulation, Start, State};
 use linkdyn_tests::linkages::{FourBar, hanging};
 use linkdyn_tests::loads::Applied;
 use linkdyn_tests::numbers::difference;
 use linkdyn_tests::strategies;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector3};
 use proptest::prelude::*;
 
 fn prescribed(names: &[String], v: &[f64], a: &[f64]) -> Vec<Prescribed> {
@@ -131,6 +132,78 @@ fn rsrrr_with_friction_gives_back_its_drive() {
                 assert!((one.force - other.force).amax() < 1e-9 && (one.torque - other.torque).amax() < 1e-9);
             }
         }
+    }
+}
+
+#[test]
+fn friction_in_a_loop_with_redundant_rows_comes_back_too() {
+    let surface = |diameter| Surface {
+        diameter,
+        coefficient: 0.2,
+    };
+    let bearing = JournalBearing {
+        spacing: 0.05,
+        surface_a: surface(0.02),
+        surface_b: surface(0.02),
+        face: surface(0.03),
+    };
+    let law = Exponential {
+        reference_speed: 0.01,
+        steepness: 3.0,
+    };
+    let rod = |length| RigidInertia::solid_cylinder(7850.0, 0.02, length, &Vector3::x());
+    let mut linkage = Linkage::new([3.0, -7.0, 5.0]);
+    let [crank, coupler, rocker] =
+        [("crank", 0.3), ("coupler", 1.0), ("rocker", 0.9)].map(|(name, length)| linkage.link(name, rod(length)));
+    let z = Joint::revolute_z();
+    let bases = [
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at(crank, [0.3, 0.0, 0.0]),
+        Mount::at(Linkage::GROUND, [1.1, 0.0, 0.0]),
+    ];
+    for ((name, base), link) in ["crank", "coupler", "rocker"]
+        .into_iter()
+        .zip(bases)
+        .zip([crank, coupler, rocker])
+    {
+        let joint = linkage.joint(name, z, base, Mount::at_origin(link));
+        linkage.friction(joint, law, bearing);
+    }
+    let (one, other) = (Mount::at(coupler, [1.0, 0.0, 0.0]), Mount::at(rocker, [0.9, 0.0, 0.0]));
+    linkage.cut("pin", z, one, other);
+    let mechanism = linkage.build().expect("valid");
+    for (angle, speed, torque) in [(0.2, 3.0, 5.0), (2.0, -4.0, 1.0), (4.5, 1.0, -8.0)] {
+        let start = Start {
+            positions: vec![
+                ("crank".into(), angle),
+                ("coupler".into(), 0.9 - angle),
+                ("rocker".into(), 1.6),
+            ],
+            held: vec!["crank".into()],
+            speeds: vec![("crank".into(), speed)],
+        };
+        let (state, _) = mechanism.assemble(&start).expect("closes");
+        let mut driven = linkage.clone();
+        driven.load(Applied {
+            drives: vec![torque, 0.0, 0.0],
+            wrenches: Vec::new(),
+        });
+        let forward = observe(&driven, 0.0, &state).expect("moves");
+        assert!(
+            forward.friction.iter().all(|f| f.abs() > 1e-3),
+            "{:?}",
+            forward.friction
+        );
+        let names = ["crank".to_owned()];
+        let motion = prescribed(&names, &[speed], &forward.a);
+        let back = inverse_dynamics(&mechanism, 0.0, &state.q, &motion).expect("moves");
+        assert!(
+            (back.drives[0] - torque).abs() < 1e-10 * 10.0,
+            "{} instead of {torque}",
+            back.drives[0]
+        );
+        assert!(difference(&back.friction, &forward.friction) < 1e-10);
+        assert!(difference(&back.multipliers, &forward.multipliers) < 1e-10);
     }
 }
 
