@@ -1,5 +1,11 @@
 //! All integration tests, one module a subject.
 
+mod analysis_branches;
+mod analysis_equilibrium;
+mod analysis_inverse;
+mod analysis_linearise;
+mod analysis_mobility;
+mod analysis_positions;
 mod architecture;
 mod assembly;
 mod baumgarte;

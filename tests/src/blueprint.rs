@@ -4,6 +4,7 @@ use crate::loads::Applied;
 use linkdyn_dynamics::{Description, Formulation, RigidInertia, System, Workspace};
 use linkdyn_kinematics::assembly::consistent_velocities;
 use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Positions, Tree, Wrench};
+use linkdyn_mechanisms::{LinkHandle, Linkage, Mount};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -177,6 +178,36 @@ impl Blueprint {
             ..Description::new(tree, self.parts.iter().map(|part| part.inertia).collect(), self.gravity)
         };
         (description, links)
+    }
+
+    /// The same as a linkage, without loads: links `l0`, `l1`, ... on joints `j0`, `j1`, ..., cut joints `c0`, `c1`, ... And its
+    /// coordinates by name.
+    pub fn linkage(&self) -> (Linkage, Vec<(String, f64)>) {
+        let mut linkage = Linkage::new(self.gravity.into());
+        let named = |(k, part): (usize, &Part)| linkage.link(&format!("l{k}"), part.inertia);
+        let links: Vec<LinkHandle> = self.parts.iter().enumerate().map(named).collect();
+        let link = |part: Option<usize>| part.map_or(Linkage::GROUND, |k| links[k]);
+        let mut coordinates = Vec::new();
+        for (k, part) in self.parts.iter().enumerate() {
+            let name = format!("j{k}");
+            let base = Mount::with_pose(link(part.parent), part.placement);
+            linkage.joint(&name, part.joint, base, Mount::at_origin(links[k]));
+            let local = part.joint.coordinate_names();
+            coordinates.extend(local.iter().zip(&part.q).map(|(local, value)| match part.q.len() {
+                1 => (name.clone(), *value),
+                _ => (format!("{name}.{local}"), *value),
+            }));
+        }
+        for (k, cut) in self.cuts.iter().enumerate() {
+            let mount = |(part, pose): (Option<usize>, Pose)| Mount::with_pose(link(part), pose);
+            linkage.cut(
+                &format!("c{k}"),
+                cut.joint,
+                mount(cut.predecessor),
+                mount(cut.successor),
+            );
+        }
+        (linkage, coordinates)
     }
 
     /// The machine, with the given formulation of its equations.

@@ -4,7 +4,7 @@ use linkdyn_dynamics::RigidInertia;
 use linkdyn_kinematics::dh::{Convention, Row};
 use linkdyn_kinematics::{Joint, Pose};
 use linkdyn_mechanisms::{Linkage, Mechanism, Mount};
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Matrix3, Unit, Vector3};
 
 fn rod(length: f64) -> RigidInertia {
     RigidInertia::solid_cylinder(7850.0, 0.02, length, &Vector3::x())
@@ -181,4 +181,68 @@ pub fn cardan(beta: f64) -> Mechanism {
     };
     linkage.cut("cross", cross, Mount::at_origin(input), Mount::at_origin(output));
     linkage.build().expect("a valid linkage")
+}
+
+/// Bricard's loop of six revolute joints \[IFToMM A04\]: five rods of 1 m along the edges of a cube, coordinates `t0` to `t4`, the sixth
+/// joint cut. At zero coordinates it is closed.
+pub fn bricard() -> Mechanism {
+    let points = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [1.0, -1.0, 1.0],
+        [0.0, -1.0, 1.0],
+        [0.0, 0.0, 1.0],
+    ]
+    .map(Vector3::from);
+    let axes = [1, 2, 0, 1, 2, 0].map(|axis| Unit::new_unchecked(Vector3::ith(axis, 1.0)));
+    let mut linkage = Linkage::new([0.0, -9.81, 0.0]);
+    let mut last = Mount::at_origin(Linkage::GROUND);
+    for k in 0..5 {
+        let arm = points[k + 1] - points[k];
+        // A box of 1 x 0.1 x 0.1 m and 1 kg.
+        let (slender, round) = (1.01 / 12.0, 0.02 / 12.0);
+        let about_com = Matrix3::identity() * slender + arm * arm.transpose() * (round - slender);
+        let com = arm * 0.5;
+        let link = linkage.link(
+            &format!("rod{k}"),
+            RigidInertia {
+                mass: 1.0,
+                com,
+                about_com,
+            },
+        );
+        linkage.joint(
+            &format!("t{k}"),
+            Joint::Revolute { axis: axes[k] },
+            last,
+            Mount::at_origin(link),
+        );
+        last = Mount::at(link, arm.into());
+    }
+    linkage.cut(
+        "t5",
+        Joint::Revolute { axis: axes[5] },
+        last,
+        Mount::at(Linkage::GROUND, points[5].into()),
+    );
+    linkage.build().expect("a valid linkage")
+}
+
+/// A chain of point-like links in the plane z = 0, hung from the ground by turns `a0`, `a1`, ... about z; link k is a massless bar of the
+/// given length \[m\] with a mass \[kg\] at its end, hanging along -y at zero angles.
+pub fn hanging(links: &[(f64, f64)]) -> Linkage {
+    let mut linkage = Linkage::new([0.0, -9.81, 0.0]);
+    let mut last = Mount::at_origin(Linkage::GROUND);
+    for (k, &(length, mass)) in links.iter().enumerate() {
+        let inertia = RigidInertia {
+            mass,
+            com: Vector3::new(0.0, -length, 0.0),
+            about_com: Matrix3::zeros(),
+        };
+        let link = linkage.link(&format!("bar{k}"), inertia);
+        linkage.joint(&format!("a{k}"), Joint::revolute_z(), last, Mount::at_origin(link));
+        last = Mount::at(link, [0.0, -length, 0.0]);
+    }
+    linkage
 }

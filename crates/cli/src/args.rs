@@ -23,6 +23,8 @@ pub enum Command {
     Report(ReportArgs),
     /// Find where methods stop being stable on a scene, and what limits them
     Stability(StabilityArgs),
+    /// Tell what can move in a scene, where it goes, where it rests, how it vibrates
+    Analyse(AnalyseArgs),
     /// List the built-in scenes
     Scenes(ScenesArgs),
 }
@@ -172,6 +174,47 @@ pub struct StabilityArgs {
     /// Print no progress
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Options of `linkdyn analyse`.
+#[derive(Debug, Args)]
+pub struct AnalyseArgs {
+    /// Name of a built-in scene (see `linkdyn scenes`)
+    pub scene: String,
+    /// What to find out
+    #[arg(value_enum)]
+    pub what: AnalysisArg,
+    /// What to switch in the scene.
+    #[command(flatten)]
+    pub variant: VariantArgs,
+    /// Coordinate to drive (positions) [default: the scene's crank]
+    #[arg(long, value_name = "NAME")]
+    pub drive: Option<String>,
+    /// Value to drive it to from the start, in radians or metres (positions) [default: one turn]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub to: Option<f64>,
+    /// Equal parts of the way, one row more than these (positions)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), default_value_t = 24)]
+    pub parts: u16,
+    /// Time at which loads are taken, in seconds (equilibrium, modes)
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    pub time: f64,
+    /// Print the tables as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Analyses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AnalysisArg {
+    /// Freedoms, and the redundant equations by name
+    Mobility,
+    /// Positions, speeds at unit speed of the driven coordinate, and their rates
+    Positions,
+    /// Where it rests, and whether stably
+    Equilibrium,
+    /// Frequencies and damping about the equilibrium
+    Modes,
 }
 
 /// Options of `linkdyn scenes`.

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod analyse;
 pub mod args;
 pub mod errors;
 pub mod figure;

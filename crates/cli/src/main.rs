@@ -10,6 +10,7 @@ fn main() -> ExitCode {
         Command::Run(args) => linkdyn_cli::run::run(&args),
         Command::Report(args) => linkdyn_cli::report::report(&args),
         Command::Stability(args) => linkdyn_cli::stability::stability(&args),
+        Command::Analyse(args) => linkdyn_cli::analyse::analyse(&args),
         Command::Scenes(args) => linkdyn_cli::scenes::list(&args),
     })
 }

@@ -1,7 +1,7 @@
 //! Joint reactions by the recursive Newton-Euler algorithm \[Craig 1986, ch. 6.5\], closures included.
 
 use crate::evaluate::inertial_wrench;
-use crate::load::Reaction;
+use crate::load::{Reaction, ReactionLoad};
 use crate::system::System;
 use crate::workspace::Workspace;
 use linkdyn_kinematics::{Freedom, LinkId, Node, NodePosition, Twist, Wrench};
@@ -50,6 +50,27 @@ impl System {
                 work.reactions[node.parent] += total;
             }
         }
+    }
+
+    /// As [`System::reactions`], for rates of the speeds and multipliers of one's own, at the state of the last
+    /// [`System::write_terms`] with `work`.
+    ///
+    /// # Panics
+    /// If `rates` has not one number a speed, or `multipliers` not one an equation.
+    pub fn reactions_for(&self, rates: &[f64], multipliers: &[f64], work: &mut Workspace) {
+        work.rates.copy_from_slice(rates);
+        work.constraint.lambda.copy_from_slice(multipliers);
+        self.reactions(work);
+    }
+
+    /// The loads that depend on reactions, each with its speed and the reaction that it sees; of the last [`System::reactions`].
+    pub fn reaction_loads_with<'a>(
+        &'a self,
+        work: &'a Workspace,
+    ) -> impl Iterator<Item = (usize, &'a dyn ReactionLoad, Reaction)> {
+        let seen = |node: usize| in_axes_of(&work.positions.nodes()[node], &work.reactions[node]);
+        let loads = self.reaction_loads.iter();
+        loads.map(move |on| (on.speed, on.load.as_ref(), seen(on.node)))
     }
 
     /// Force and torque exerted on `link` by its predecessor at the joint's origin, in axes of `link`; of the last

@@ -5,9 +5,10 @@ mod least_squares;
 use crate::closure::Closure;
 use crate::motion::Positions;
 use crate::tree::Tree;
-use least_squares::SingularValues;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
+
+pub use least_squares::SingularValues;
 
 /// What [`assemble`] may do.
 #[derive(Clone, Copy, Debug, PartialEq)]

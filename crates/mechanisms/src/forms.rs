@@ -57,11 +57,7 @@ impl ConstrainedMechanism {
             let joint = joint.name.clone();
             return Err(FormError::Friction { joint });
         }
-        if !system.internals().is_empty() {
-            let what = match mechanism.contacts.first() {
-                Some(contact) => format!("joint `{}` has clearance", contact.name),
-                None => "a load has states, integrals or events of its own".into(),
-            };
+        if let Some(what) = mechanism.stateful() {
             return Err(FormError::Internals { what });
         }
         let (coordinates, speeds) = (system.tree().coordinates(), system.tree().speeds());

@@ -94,6 +94,11 @@ impl Mechanism {
         self.coordinates.iter().map(String::as_str)
     }
 
+    /// Names of the speeds in the order of `v`; those of the coordinates wherever they are their rates.
+    pub fn speed_names(&self) -> impl Iterator<Item = &str> {
+        self.speeds.iter().map(String::as_str)
+    }
+
     /// Names of the joints of the tree, in the order of attachment.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
         self.joints.iter().map(|joint| joint.name.as_str())
@@ -145,6 +150,17 @@ impl Mechanism {
         self.joints.iter().any(|joint| joint.has_friction)
     }
 
+    /// Which load has states, integrals or events of its own, if one has.
+    pub(crate) fn stateful(&self) -> Option<String> {
+        if self.system.internals().is_empty() {
+            return None;
+        }
+        Some(match self.contacts.first() {
+            Some(contact) => format!("joint `{}` has clearance", contact.name),
+            None => "a load has states, integrals or events of its own".into(),
+        })
+    }
+
     /// An error of the equations of motion in terms of this mechanism's names.
     #[cold]
     pub fn explain(&self, cause: DynamicsError) -> MotionError {
@@ -183,7 +199,7 @@ impl Mechanism {
         Ok((state, closed))
     }
 
-    fn index(&self, name: &str) -> Result<usize, StartError> {
+    pub(crate) fn index(&self, name: &str) -> Result<usize, StartError> {
         self.coordinate_names()
             .position(|known| known == name)
             .ok_or_else(|| StartError::UnknownCoordinate {
@@ -193,7 +209,7 @@ impl Mechanism {
     }
 
     /// The speed that belongs to a coordinate (for the quaternion of a ball joint: w, x, y, z to its three speeds).
-    fn speed(&self, name: &str) -> Result<usize, StartError> {
+    pub(crate) fn speed(&self, name: &str) -> Result<usize, StartError> {
         let index = self.index(name)?;
         let tree = self.system.tree();
         for (link, _) in tree.joints() {
@@ -203,5 +219,20 @@ impl Mechanism {
             }
         }
         Ok(index)
+    }
+
+    /// The coordinate whose rate a speed is; of a ball joint with a quaternion the part about the speed's axis.
+    pub(crate) fn value_of_speed(&self, speed: usize, q: &[f64]) -> f64 {
+        self.coordinate_of_speed(speed).map_or(f64::NAN, |index| q[index])
+    }
+
+    /// Index of that coordinate.
+    pub(crate) fn coordinate_of_speed(&self, speed: usize) -> Option<usize> {
+        let tree = self.system.tree();
+        tree.joints().iter().find_map(|(link, _)| {
+            let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
+            v.contains(&speed)
+                .then(|| q.start + (speed - v.start) + (q.len() - v.len()))
+        })
     }
 }

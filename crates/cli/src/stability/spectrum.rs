@@ -7,7 +7,6 @@ use std::ops::ControlFlow;
 
 use linkdyn_mechanisms::integrators::{Integration, Ode};
 use linkdyn_mechanisms::{CONTACT_SPEED_SCALE, SPEED_SCALE, Seen, Simulation, run_watched};
-use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
 use nalgebra::{Complex, DMatrix};
 
 use crate::report::measure::Limit;
@@ -22,8 +21,6 @@ pub const REFERENCE: &str = "radau5";
 const PARTS: usize = 20;
 /// Difference of a coordinate, in units of the scene's length: halfway between truncation and rounding.
 const DIFFERENCE: f64 = 1e-6;
-/// Iterations of the eigenvalue solver.
-const ITERATIONS: usize = 100_000;
 
 /// A state of the reference run.
 #[derive(Clone, Debug)]
@@ -161,12 +158,7 @@ fn eigenvalues(simulation: &mut Simulation, sample: &Sample) -> Result<Vec<Compl
             matrix[(i, j)] = (rates[0][i] - rates[1][i]) / (2.0 * delta);
         }
     }
-    if matrix.iter().any(|x| !x.is_finite()) {
-        return Err("a derivative is not finite".to_owned());
-    }
-    balance_parlett_reinsch(&mut matrix);
-    let schur = Schur::try_new(matrix, f64::EPSILON, ITERATIONS).ok_or("they do not converge")?;
-    Ok(schur.complex_eigenvalues().iter().copied().collect())
+    linkdyn_mechanisms::analysis::eigenvalues(matrix).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]

@@ -12,7 +12,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const ROUNDS: usize = 60;
 
 /// Singular values and vectors of a matrix.
-pub(super) struct SingularValues {
+#[derive(Clone, Debug)]
+pub struct SingularValues {
     /// `u_k s_k` of the matrix, or of its transpose where that is the taller one.
     scaled: DMatrix<f64>,
     /// `v_k`.
@@ -22,6 +23,7 @@ pub(super) struct SingularValues {
 }
 
 impl SingularValues {
+    /// Decomposes `matrix`; one that is not finite counts as zero.
     pub fn new(matrix: &DMatrix<f64>) -> Self {
         let transposed = matrix.ncols() > matrix.nrows();
         let mut scaled = if transposed { matrix.transpose() } else { matrix.clone() };
@@ -55,6 +57,18 @@ impl SingularValues {
     /// Number of singular values that are not zero by the tolerance; 0 for matrices that are not finite.
     pub fn rank(&self) -> usize {
         self.nonzero().count()
+    }
+
+    /// Smallest singular value over the largest, and the unit vector `x` for which `|A x|` is so small; `None` where `A` has more
+    /// columns than rows, or none.
+    pub fn weakest(&self) -> Option<(f64, DVector<f64>)> {
+        if self.transposed {
+            return None;
+        }
+        let largest = self.values.iter().fold(0.0, |s, &x| f64::max(s, x));
+        let k = (0..self.values.len()).min_by(|&i, &j| self.values[i].total_cmp(&self.values[j]))?;
+        let share = if largest > 0.0 { self.values[k] / largest } else { 0.0 };
+        Some((share, self.vectors.column(k).into_owned()))
     }
 
     /// Shortest least-squares solution of `A x = b`.
