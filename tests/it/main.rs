@@ -28,6 +28,7 @@ mod implicit;
 mod invariances;
 mod linkage_refusals;
 mod load_internals;
+mod methods_on_scenes;
 mod newton_euler;
 mod peers;
 mod projection;

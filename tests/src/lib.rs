@@ -5,6 +5,7 @@ mod blueprint;
 pub mod budget;
 pub mod linkages;
 pub mod loads;
+pub mod methods;
 pub mod numbers;
 pub mod reference;
 pub mod scenes;

@@ -1,7 +1,7 @@
 //! Scenes of the catalogue, run by any method, with all that is observed.
 
 use linkdyn_integrators::{Integration, Method, Statistics};
-use linkdyn_mechanisms::catalogue::{Rsrrr, Rsup, rsrrr, rsup};
+use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, rsrrr, rsup};
 use linkdyn_mechanisms::{ContactEvent, Mechanism, Observation, RunError, Scene, Seen, Simulation, State, run_watched};
 use std::ops::ControlFlow;
 
@@ -32,6 +32,27 @@ pub fn ready_rsrrr(friction: bool, friction_scale: f64) -> Ready {
 /// If there is none such, or if it does not build or close.
 pub fn ready_rsup(variant: &Rsup) -> Ready {
     prepare(rsup(variant).expect("there is such a variant"))
+}
+
+/// The built-in scenes and their main variants, as the program is told them.
+pub fn builtin() -> [(&'static str, Ready); 7] {
+    let variant = |clearance, flexible| {
+        ready_rsup(&Rsup {
+            clearance,
+            flexible,
+            ..Rsup::default()
+        })
+    };
+    let (planar, spatial) = (Some(ClearanceKind::Planar), Some(ClearanceKind::Spatial));
+    [
+        ("rsrrr", ready_rsrrr(false, 1.0)),
+        ("rsrrr --friction", ready_rsrrr(true, 1.0)),
+        ("rsup", variant(None, None)),
+        ("rsup --clearance planar", variant(planar, None)),
+        ("rsup --clearance spatial", variant(spatial, None)),
+        ("rsup --flexible 4", variant(None, Some(4))),
+        ("rsup --flexible 4 --clearance planar", variant(planar, Some(4))),
+    ]
 }
 
 /// Builds a scene and closes its loops.

@@ -2,6 +2,7 @@
 
 use crate::system::System;
 use crate::workspace::{MassFactor, Workspace};
+use linkdyn_kinematics::Wrench;
 
 /// Residuals below this share of the largest distance from the origin (or of 1 m) are rounding and are left alone.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -22,16 +23,62 @@ pub struct Drift {
 }
 
 impl System {
-    /// Moves `q` and `v` back onto the closures along the shortest way in the metric of the mass matrix of the last
-    /// evaluation in `work` (any mass matrix near the state serves as a metric).
+    /// Moves `q` and `v` back onto the closures along the shortest way in the metric of the mass matrix there. What `work` has been used
+    /// for before does not matter.
     ///
     /// This is meant for drift: from far away use [`linkdyn_kinematics::assembly`].
     pub fn project(&self, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
-        self.project_beyond(0.0, q, v, work)
+        let has_metric = self.set_metric(q, v, work);
+        self.project_by_metric(0.0, q, v, work, has_metric)
     }
 
-    /// As [`System::project`], but residuals up to `tolerance` \[m, -\] and rates up to it \[m/s, 1/s\] stay as they are.
+    /// As [`System::project`], but residuals up to `tolerance` \[m, -\] and rates up to it \[m/s, 1/s\] stay as they are, and the
+    /// metric is that of the last evaluation in `work`: any mass matrix near the state serves as well, and costs nothing.
     pub fn project_beyond(&self, tolerance: f64, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
+        let has_metric = work.counters.evaluations > 0 || self.set_metric(q, v, work);
+        self.project_by_metric(tolerance, q, v, work, has_metric)
+    }
+
+    /// Factors the mass matrix; false if it is singular.
+    fn set_metric(&self, q: &[f64], v: &[f64], work: &mut Workspace) -> bool {
+        if self.closures.is_empty() {
+            return true;
+        }
+        let (gravity, nodes) = (-self.gravity, self.tree.nodes());
+        self.tree.sweep(
+            q,
+            v,
+            &gravity,
+            &mut work.positions,
+            &mut work.velocities,
+            &mut work.biases,
+        );
+        work.own.fill(Wrench::zero());
+        self.own_wrenches(work);
+        work.columns.clear();
+        match &mut work.mass {
+            MassFactor::Composite(mass) => {
+                let (positions, inertias) = (work.positions.nodes(), &work.inertias);
+                work.wrenches.copy_from_slice(&work.own);
+                mass.assemble(nodes, positions, inertias, &mut work.wrenches, &mut work.columns);
+                mass.factor().is_ok()
+            }
+            MassFactor::Articulated(mass) => {
+                let positions = work.positions.nodes();
+                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns)
+                    .is_ok()
+            }
+        }
+    }
+
+    fn project_by_metric(
+        &self,
+        tolerance: f64,
+        q: &mut [f64],
+        v: &mut [f64],
+        work: &mut Workspace,
+        has_metric: bool,
+    ) -> Drift {
         let mut drift = Drift::default();
         if self.tree.normalise(q) > ROUNDING {
             drift.changed = true;
@@ -39,8 +86,7 @@ impl System {
         if self.closures.is_empty() {
             return drift;
         }
-        // The metric is that of the last evaluation; a fresh workspace has none yet.
-        if work.counters.evaluations == 0 && self.evaluate(0.0, q, v, work).is_err() {
+        if !has_metric {
             return Drift {
                 remaining: f64::INFINITY,
                 ..drift

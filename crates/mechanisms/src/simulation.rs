@@ -3,7 +3,7 @@
 use crate::error::MotionError;
 use crate::events::{ContactEvent, Memory, Switching};
 use crate::mechanism::{Mechanism, State};
-use linkdyn_dynamics::{Counters, Drift, Instant, InternalState, Workspace};
+use linkdyn_dynamics::{Counters, Drift, Instant, InternalState, System, Workspace};
 use linkdyn_integrators::{EvalError, Ode, SecondOrder, Settings, Tolerance};
 use std::ops::Range;
 use thiserror::Error;
@@ -234,13 +234,17 @@ impl Simulation {
 
     /// Puts a state vector back onto the closures.
     pub fn put_on_closures(&mut self, y: &mut [f64]) -> Drift {
-        self.project_beyond(0.0, y)
+        self.project_by(System::project, y)
     }
 
-    fn project_beyond(&mut self, tolerance: f64, y: &mut [f64]) -> Drift {
+    fn project_by(
+        &mut self,
+        project: impl FnOnce(&System, &mut [f64], &mut [f64], &mut Workspace) -> Drift,
+        y: &mut [f64],
+    ) -> Drift {
         let (q, rest) = y.split_at_mut(self.layout.speeds.start);
         let (system, v) = (&self.mechanism.system, &mut rest[..self.layout.speeds.len()]);
-        let drift = system.project_beyond(tolerance, q, v, &mut self.work);
+        let drift = project(system, q, v, &mut self.work);
         self.worst.position_drift = self.worst.position_drift.max(drift.position);
         self.worst.velocity_drift = self.worst.velocity_drift.max(drift.velocity);
         drift
@@ -317,7 +321,8 @@ impl Ode for Simulation {
     }
 
     fn project(&mut self, _t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
-        let drift = self.project_beyond(self.drift_tolerance, y);
+        let tolerance = self.drift_tolerance;
+        let drift = self.project_by(|system, q, v, work| system.project_beyond(tolerance, q, v, work), y);
         if drift.remaining > OFF_THE_LOOP {
             return Err(EvalError::Retry(Box::new(OffTheLoop(drift.remaining))));
         }

@@ -82,7 +82,7 @@ macro_rules! by_peer {
 
 /// Methods for stiff problems. Where Newton's tolerance of the peer's radau5 is zero it goes by that of the steps, as in the original; its
 /// default does not. Names with an asterisk have df/dy by [`Differences::Original`].
-pub const STIFF: [Solver; 8] = [
+pub const STIFF: [Solver; 10] = [
     ours("Radau5", |p, tol| solve(p, Radau5::default(), tol)),
     peer("radau5", |p, tol| {
         by_peer!(p, tol, ImplicitRungeKutta::radau5().newton_tol(0.0))
