@@ -17,6 +17,7 @@ mod observation;
 mod run;
 mod scene;
 mod simulation;
+mod spline;
 mod spring;
 mod tally;
 
@@ -32,6 +33,7 @@ pub use observation::Observation;
 pub use run::{MOST_ROWS, RunError, Seen, run, run_watched};
 pub use scene::Scene;
 pub use simulation::{CONTACT_SPEED_SCALE, Layout, OffTheLoop, SPEED_SCALE, Simulation, Worst};
+pub use spline::Spline;
 pub use spring::Spring;
 pub use tally::{PointTally, Tally};
 
