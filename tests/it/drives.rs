@@ -38,7 +38,11 @@ fn after(drive: Drive, speed: f64, until: f64) -> (f64, f64) {
     let simulation = Simulation::new(&mechanism);
     let y = simulation.state_vector(&state);
     let settings = Settings::tolerances(1e-12, 1e-12);
-    let mut steps = Integration::new(simulation, Dop853::default(), 0.0, &y, settings).expect("a sound problem");
+    let steps = Integration::new(simulation, Dop853::default(), 0.0, &y, settings);
+    let stops = mechanism.system().stop_times();
+    let mut steps = steps
+        .and_then(|steps| steps.with_stops(&stops))
+        .expect("a sound problem");
     let mut end = (f64::NAN, f64::NAN);
     run(&mut steps, until, until, |now| {
         end = (now.q[0], now.v[0]);
