@@ -130,7 +130,7 @@ proptest! {
     #[test]
     fn velocities_and_accelerations_are_rates_of_positions(
         blueprint in strategies::tree(1..=5),
-        rates in prop::collection::vec(strategies::number(3.0), 15),
+        rates in prop::collection::vec(strategies::number(3.0), 30),
         base in strategies::vector(10.0),
     ) {
         let m = Moving::new(&blueprint);

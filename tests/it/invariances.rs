@@ -97,6 +97,10 @@ fn mirrored(blueprint: &Blueprint) -> Blueprint {
             first: turn(first),
             second: turn(second),
         },
+        Joint::Planar { along, normal } => Joint::Planar {
+            along: slide(along),
+            normal: turn(normal),
+        },
         other => *other,
     };
     let pose = |pose: &Pose| Pose {
@@ -140,6 +144,9 @@ fn signs(joint: &Joint, count: usize) -> &'static [f64] {
             _ => &[-1.0, -1.0, 1.0],
         },
         (Joint::Spherical, _) => &[1.0, -1.0, -1.0, 1.0],
+        (Joint::Free, 6) => &[1.0, 1.0, -1.0, -1.0, -1.0, 1.0],
+        (Joint::Free, _) => &[1.0, 1.0, -1.0, 1.0, -1.0, -1.0, 1.0],
+        (Joint::Planar { .. }, _) => &[1.0; 3],
         _ => &[1.0, 1.0],
     }
 }

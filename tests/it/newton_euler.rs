@@ -189,7 +189,7 @@ proptest! {
     #[test]
     fn closures_do_no_work_on_allowed_motions(
         blueprint in strategies::closed(2..=10, 1..=3),
-        guess in prop::collection::vec(strategies::number(1.0), 30),
+        guess in prop::collection::vec(strategies::number(1.0), 60),
     ) {
         let machine = blueprint.machine(Formulation::Recursive);
         let work = machine.evaluate();

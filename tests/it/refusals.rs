@@ -320,7 +320,7 @@ proptest! {
         // plane of the link's axes two of the string's three pivots share the loss of digits, and the last is no longer rounding.
         prop_assume!(axis.iter().all(|x| x.abs() > 0.4) && along.abs() > 1e-3);
         let on_axis = (Joint::Revolute { axis }, vec![angle], 1);
-        let string = (Joint::Spherical, strategies::coordinates(&Joint::Spherical, &[angle / 3.0, along, 0.3, -0.2]), 3);
+        let string = (Joint::Spherical, strategies::coordinates(&Joint::Spherical, &[angle / 3.0, along, 0.3, -0.2, 0.0, 0.0, 0.0]), 3);
         for formulation in RECURSIONS {
             for (joint, q, speeds) in [on_axis.clone(), string.clone()] {
                 let mut tree = Tree::new();

@@ -58,6 +58,8 @@ pub fn moving_joint() -> impl Strategy<Value = Joint> {
         1 => universal(),
         1 => Just(Joint::SphericalZyx),
         1 => Just(Joint::Spherical),
+        1 => planar(),
+        1 => Just(Joint::Free),
     ]
 }
 
@@ -78,23 +80,31 @@ fn universal() -> impl Strategy<Value = Joint> {
     })
 }
 
+/// A planar joint.
+fn planar() -> impl Strategy<Value = Joint> {
+    (direction(), number(PI)).prop_map(|(normal, turn)| Joint::Planar {
+        along: Unit::new_normalize(Pose::turn(normal, turn).rotation * normal.cross(&off(&normal))),
+        normal,
+    })
+}
+
 /// A direction that is not that of `axis`.
 fn off(axis: &Vector3<f64>) -> Vector3<f64> {
     if axis.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() }
 }
 
-/// Four numbers between -1 and 1 that become the coordinates of any joint.
-pub type Raw = [f64; 4];
+/// Seven numbers between -1 and 1 that become the coordinates of any joint.
+pub type Raw = [f64; 7];
 
 /// Numbers for [`coordinates`].
 pub fn raw() -> impl Strategy<Value = Raw> {
-    prop::array::uniform4(number(1.0))
+    prop::array::uniform7(number(1.0))
 }
 
 /// Coordinates of a joint: any angles (but `theta` of three turns stays 0.3 rad off its singularity), slides up to half a
 /// metre, unit quaternions.
 pub fn coordinates(joint: &Joint, raw: &Raw) -> Vec<f64> {
-    let [a, b, c, d] = *raw;
+    let [a, b, c, d, ..] = *raw;
     match joint {
         Joint::Fixed => vec![],
         Joint::Revolute { .. } => vec![PI * a],
@@ -102,13 +112,22 @@ pub fn coordinates(joint: &Joint, raw: &Raw) -> Vec<f64> {
         Joint::Cylindrical { .. } => vec![0.5 * a, PI * b],
         Joint::Universal { .. } => vec![PI * a, PI * b],
         Joint::SphericalZyx => vec![PI * a, (PI / 2.0 - 0.3) * b, PI * c],
-        Joint::Spherical => {
-            // The shift of w keeps the length away from zero, at the price of turns that are not uniform.
-            let w = if a < 0.0 { a - 0.1 } else { a + 0.1 };
-            let length = (w * w + b * b + c * c + d * d).sqrt();
-            vec![w / length, b / length, c / length, d / length]
+        Joint::Spherical => quaternion([a, b, c, d]),
+        Joint::Planar { .. } => vec![0.5 * a, 0.5 * b, PI * c],
+        Joint::Free => {
+            let mut q = vec![0.5 * a, 0.5 * b, 0.5 * c];
+            q.extend(quaternion([d, raw[4], raw[5], raw[6]]));
+            q
         }
     }
+}
+
+/// A unit quaternion.
+fn quaternion([a, b, c, d]: [f64; 4]) -> Vec<f64> {
+    // The shift of w keeps the length away from zero, at the price of turns that are not uniform.
+    let w = if a < 0.0 { a - 0.1 } else { a + 0.1 };
+    let length = (w * w + b * b + c * c + d * d).sqrt();
+    vec![w / length, b / length, c / length, d / length]
 }
 
 /// A possible inertia: a rod or a wheel (bodies of revolution about their origins' axis), an irregular body, or one that looks
@@ -155,8 +174,8 @@ fn place() -> impl Strategy<Value = Option<Index>> {
 
 fn part() -> impl Strategy<Value = (Part, Option<Index>, bool)> {
     let body = (inertia(), prop::bool::weighted(0.15));
-    let load = (prop::array::uniform3(number(5.0)), wrench(5.0));
-    let state = (raw(), prop::array::uniform3(number(2.0)));
+    let load = (prop::array::uniform6(number(5.0)), wrench(5.0));
+    let state = (raw(), prop::array::uniform6(number(2.0)));
     (joint(), pose(0.5), place(), body, state, load).prop_map(
         |(joint, placement, place, (inertia, empty), (raw, v), (drive, wrench))| {
             let part = Part {

@@ -471,6 +471,11 @@ fn rows_of(joint: &Joint) -> Vec<Row> {
             });
         }
         Joint::SphericalZyx | Joint::Spherical => rows.push(Row::Coincident),
+        Joint::Planar { normal, .. } => {
+            rows.push(Row::Along { axis: **normal });
+            rows.extend(parallel(normal));
+        }
+        Joint::Free => {}
     }
     rows
 }

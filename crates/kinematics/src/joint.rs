@@ -41,6 +41,16 @@ pub enum Joint {
     /// Ball joint without singularity: a quaternion (w, x, y, z) as coordinates and the angular velocity relative to the
     /// predecessor, in axes of the successor, as speeds \[rad/s\].
     Spherical,
+    /// Motion in a plane: slides \[m\] along `along` and `normal x along`, then a turn \[rad\] about `normal`.
+    Planar {
+        /// Direction of the first slide, at right angles to the normal.
+        along: Unit<Vector3<f64>>,
+        /// Axis of the turn.
+        normal: Unit<Vector3<f64>>,
+    },
+    /// Nothing is held: slides \[m\] along x, y and z of the predecessor, then a turn as of [`Joint::Spherical`]. As a cut it
+    /// has no equations.
+    Free,
 }
 
 impl Joint {
@@ -62,6 +72,7 @@ impl Joint {
     pub fn coordinates(&self) -> usize {
         match self {
             Joint::Spherical => 4,
+            Joint::Free => 7,
             other => other.speeds(),
         }
     }
@@ -81,13 +92,16 @@ impl Joint {
             Joint::Universal { .. } => &["psi", "theta"],
             Joint::SphericalZyx => &["psi", "theta", "phi"],
             Joint::Spherical => &["w", "x", "y", "z"],
+            Joint::Planar { .. } => &["x", "y", "psi"],
+            Joint::Free => &["x", "y", "z", "qw", "qx", "qy", "qz"],
         }
     }
 
-    /// Names of the speeds; equal to those of the coordinates except for the quaternion joint.
+    /// Names of the speeds; equal to those of the coordinates except where there is a quaternion.
     pub fn speed_names(&self) -> &'static [&'static str] {
         match self {
             Joint::Spherical => &["wx", "wy", "wz"],
+            Joint::Free => &["vx", "vy", "vz", "wx", "wy", "wz"],
             other => other.coordinate_names(),
         }
     }
@@ -95,19 +109,31 @@ impl Joint {
     /// The joint as a chain of steps. This is the only place that knows what kinds of joints there are.
     pub(crate) fn steps(&self) -> impl Iterator<Item = Step> + use<> {
         let (x, y, z) = (Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis());
+        let (turn, slide, ball) = (
+            |axis| Some(Step::Turn(axis)),
+            |axis| Some(Step::Slide(axis)),
+            |k| Some(Step::Ball(k)),
+        );
+        let none = None;
         let list = match *self {
-            Joint::Fixed => [None; 3],
-            Joint::Revolute { axis } => [Some(Step::Turn(axis)), None, None],
-            Joint::Prismatic { axis } => [Some(Step::Slide(axis)), None, None],
-            Joint::Cylindrical { axis } => [Some(Step::Slide(axis)), Some(Step::Turn(axis)), None],
-            Joint::Universal { first, second } => [Some(Step::Turn(first)), Some(Step::Turn(second)), None],
-            Joint::SphericalZyx => [Some(Step::Turn(z)), Some(Step::Turn(y)), Some(Step::Turn(x))],
-            Joint::Spherical => [Some(Step::Ball(0)), Some(Step::Ball(1)), Some(Step::Ball(2))],
+            Joint::Fixed => [none; 6],
+            Joint::Revolute { axis } => [turn(axis), none, none, none, none, none],
+            Joint::Prismatic { axis } => [slide(axis), none, none, none, none, none],
+            Joint::Cylindrical { axis } => [slide(axis), turn(axis), none, none, none, none],
+            Joint::Universal { first, second } => [turn(first), turn(second), none, none, none, none],
+            Joint::SphericalZyx => [turn(z), turn(y), turn(x), none, none, none],
+            Joint::Spherical => [ball(0), ball(1), ball(2), none, none, none],
+            Joint::Planar { along, normal } => {
+                let across = Unit::new_unchecked(normal.cross(&along));
+                [slide(along), slide(across), turn(normal), none, none, none]
+            }
+            Joint::Free => [slide(x), slide(y), slide(z), ball(0), ball(1), ball(2)],
         };
         list.into_iter().flatten()
     }
 
-    /// Checks that every axis of the joint is a finite unit vector, and that those of a universal joint are not parallel.
+    /// Checks that every axis of the joint is a finite unit vector, that those of a universal joint are not
+    /// parallel, and that those of a planar joint are at right angles.
     ///
     /// # Errors
     /// [`TreeError::BadAxis`]. [`crate::Tree::attach`] checks by itself, [`crate::Closure::new`] trusts its caller.
@@ -116,7 +142,8 @@ impl Joint {
         let sound = match self {
             Joint::Revolute { axis } | Joint::Prismatic { axis } | Joint::Cylindrical { axis } => unit(axis),
             Joint::Universal { first, second } => unit(first) && unit(second) && first.cross(second).norm() > 1e-6,
-            Joint::Fixed | Joint::SphericalZyx | Joint::Spherical => true,
+            Joint::Planar { along, normal } => unit(along) && unit(normal) && along.dot(normal).abs() < 1e-9,
+            Joint::Fixed | Joint::SphericalZyx | Joint::Spherical | Joint::Free => true,
         };
         if sound {
             Ok(())

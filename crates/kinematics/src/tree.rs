@@ -79,8 +79,11 @@ pub enum TreeError {
         /// See [`Pose::defect`].
         defect: f64,
     },
-    /// A joint axis is not a unit vector, or the two axes of a universal joint are parallel.
-    #[error("axes of joint {joint:?} must be finite unit vectors, and those of a universal joint not parallel")]
+    /// A joint axis is not a unit vector, the two axes of a universal joint are parallel, or those of a planar joint not at
+    /// right angles.
+    #[error(
+        "axes of joint {joint:?} must be finite unit vectors, those of a universal joint not parallel, those of a planar joint at right angles"
+    )]
     BadAxis {
         /// The joint.
         joint: Joint,

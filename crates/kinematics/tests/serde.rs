@@ -31,6 +31,11 @@ fn joints_come_back() {
         Joint::Universal { first: axis, second },
         Joint::SphericalZyx,
         Joint::Spherical,
+        Joint::Planar {
+            along: second,
+            normal: axis,
+        },
+        Joint::Free,
     ];
     for joint in joints {
         assert_eq!(from_str::<Joint>(&to_string(&joint).unwrap()).unwrap(), joint);

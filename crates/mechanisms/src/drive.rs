@@ -1,6 +1,8 @@
 //! Drives and resistances: torques or forces on one coordinate as functions of time, coordinate and speed.
 
+use crate::Spline;
 use linkdyn_dynamics::{Load, Loads, Motion};
+use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
 
@@ -31,6 +33,27 @@ pub enum Drive {
         /// Reference speed \[rad/s, m/s\].
         reference_speed: f64,
     },
+    /// Opposes the speed by its square: `-torque * (speed/reference_speed) |speed/reference_speed|`, as air does.
+    QuadraticResistance {
+        /// Torque or force at the reference speed \[N m, N\].
+        torque: f64,
+        /// Reference speed \[rad/s, m/s\].
+        reference_speed: f64,
+    },
+    /// `amplitude * sin(2 pi frequency t + phase)`.
+    Harmonic {
+        /// Largest torque or force \[N m, N\].
+        amplitude: f64,
+        /// Frequency \[Hz\].
+        frequency: f64,
+        /// Phase at t = 0 \[rad\].
+        phase: f64,
+    },
+    /// A table over time \[s\] of torques \[N m\] or forces \[N\].
+    Table {
+        /// The table, constant before its first and behind its last node.
+        spline: Spline,
+    },
     /// Any function, with the times at which it or a derivative of it jumps \[s\].
     Custom {
         /// The function.
@@ -53,6 +76,22 @@ impl fmt::Debug for Drive {
                 f,
                 "Resistance {{ torque: {torque}, reference_speed: {reference_speed} }}"
             ),
+            Drive::QuadraticResistance {
+                torque,
+                reference_speed,
+            } => write!(
+                f,
+                "QuadraticResistance {{ torque: {torque}, reference_speed: {reference_speed} }}"
+            ),
+            Drive::Harmonic {
+                amplitude,
+                frequency,
+                phase,
+            } => write!(
+                f,
+                "Harmonic {{ amplitude: {amplitude}, frequency: {frequency}, phase: {phase} }}"
+            ),
+            Drive::Table { spline } => write!(f, "Table {{ spline: {spline:?} }}"),
             Drive::Custom { stop_times, .. } => write!(f, "Custom {{ stop_times: {stop_times:?} }}"),
         }
     }
@@ -69,6 +108,19 @@ impl Drive {
                 torque,
                 reference_speed,
             } => -torque * v / reference_speed,
+            Drive::QuadraticResistance {
+                torque,
+                reference_speed,
+            } => {
+                let share = v / reference_speed;
+                -torque * share * share.abs()
+            }
+            Drive::Harmonic {
+                amplitude,
+                frequency,
+                phase,
+            } => amplitude * (TAU * frequency * t + phase).sin(),
+            Drive::Table { spline } => spline.value(t),
             Drive::Custom { function, .. } => function(t, q, v),
         }
     }
@@ -76,7 +128,10 @@ impl Drive {
     /// First parameter that is out of range: its name, value and what would be right.
     pub(crate) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
         match *self {
-            Drive::Ramp { torque, .. } | Drive::Constant { torque } | Drive::Resistance { torque, .. }
+            Drive::Ramp { torque, .. }
+            | Drive::Constant { torque }
+            | Drive::Resistance { torque, .. }
+            | Drive::QuadraticResistance { torque, .. }
                 if !torque.is_finite() =>
             {
                 Some(("torque", torque, "a finite number"))
@@ -84,9 +139,19 @@ impl Drive {
             Drive::Ramp { rise_time, .. } if !(rise_time.is_finite() && rise_time > 0.0) => {
                 Some(("rise_time", rise_time, "a finite positive number"))
             }
-            Drive::Resistance { reference_speed, .. } if !(reference_speed.is_finite() && reference_speed > 0.0) => {
+            Drive::Resistance { reference_speed, .. } | Drive::QuadraticResistance { reference_speed, .. }
+                if !(reference_speed.is_finite() && reference_speed > 0.0) =>
+            {
                 Some(("reference_speed", reference_speed, "a finite positive number"))
             }
+            Drive::Harmonic { amplitude, .. } if !amplitude.is_finite() => {
+                Some(("amplitude", amplitude, "a finite number"))
+            }
+            Drive::Harmonic { frequency, .. } if !(frequency.is_finite() && frequency >= 0.0) => {
+                Some(("frequency", frequency, "a finite number, not negative"))
+            }
+            Drive::Harmonic { phase, .. } if !phase.is_finite() => Some(("phase", phase, "a finite number")),
+            Drive::Table { ref spline } => spline.fault(),
             _ => None,
         }
     }
@@ -95,7 +160,11 @@ impl Drive {
         match self {
             Drive::Ramp { rise_time, .. } => vec![0.0, *rise_time],
             Drive::Custom { stop_times, .. } => stop_times.clone(),
-            Drive::Constant { .. } | Drive::Resistance { .. } => Vec::new(),
+            Drive::Table { spline } => spline.kinks().to_vec(),
+            Drive::Constant { .. }
+            | Drive::Resistance { .. }
+            | Drive::QuadraticResistance { .. }
+            | Drive::Harmonic { .. } => Vec::new(),
         }
     }
 }

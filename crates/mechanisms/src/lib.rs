@@ -18,6 +18,7 @@ mod observation;
 mod run;
 mod scene;
 mod simulation;
+mod spline;
 mod spring;
 mod tally;
 
@@ -33,6 +34,7 @@ pub use observation::Observation;
 pub use run::{MOST_ROWS, RunError, Seen, run, run_watched};
 pub use scene::Scene;
 pub use simulation::{CONTACT_SPEED_SCALE, Layout, OffTheLoop, SPEED_SCALE, Simulation, Worst};
+pub use spline::Spline;
 pub use spring::Spring;
 pub use tally::{PointTally, Tally};
 
