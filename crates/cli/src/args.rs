@@ -23,6 +23,10 @@ pub enum Command {
     Report(ReportArgs),
     /// Find where methods stop being stable on a scene, and what limits them
     Stability(StabilityArgs),
+    /// Say all that is wrong with a scene file, else draw its tree and count its freedoms
+    Check(CheckArgs),
+    /// Print the JSON Schema of scene files, for editors
+    Schema,
     /// List the built-in scenes
     Scenes(ScenesArgs),
 }
@@ -30,7 +34,7 @@ pub enum Command {
 /// Options of `linkdyn run`.
 #[derive(Debug, Args)]
 pub struct RunArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
     /// Folder for the results; an earlier run in it is replaced as a whole [default: below out/, named after scene and variant]
     #[arg(short, long, value_name = "DIR")]
@@ -109,7 +113,7 @@ pub struct VariantArgs {
 /// Options of `linkdyn report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     #[arg(required_unless_present = "all")]
     pub scene: Option<String>,
     /// Report on all built-in scenes and their main variants, each with its share of the budget
@@ -151,7 +155,7 @@ pub struct ReportArgs {
 /// Options of `linkdyn stability`.
 #[derive(Debug, Args)]
 pub struct StabilityArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
     /// Folder for the tables; an earlier run in it is replaced as a whole [default: out/stability-, and the name of scene and
     /// variant]
@@ -172,6 +176,13 @@ pub struct StabilityArgs {
     /// Print no progress
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Options of `linkdyn check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file, or name of a built-in scene
+    pub scene: String,
 }
 
 /// Options of `linkdyn scenes`.

@@ -8,15 +8,19 @@ mod clearance;
 mod drive;
 mod error;
 mod events;
+#[cfg(feature = "file")]
+pub mod file;
 mod flexible;
 mod forms;
 mod joint_friction;
 mod linkage;
 mod mechanism;
 mod observation;
+mod outline;
 mod run;
 mod scene;
 mod simulation;
+mod spanning;
 mod spring;
 mod tally;
 
@@ -32,6 +36,7 @@ pub use observation::Observation;
 pub use run::{MOST_ROWS, RunError, Seen, run, run_watched};
 pub use scene::Scene;
 pub use simulation::{CONTACT_SPEED_SCALE, Layout, OffTheLoop, SPEED_SCALE, Simulation, Worst};
+pub use spanning::{Edge, Role, spanning_tree};
 pub use spring::Spring;
 pub use tally::{PointTally, Tally};
 
