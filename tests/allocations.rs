@@ -31,7 +31,9 @@ fn allocations(ready: &Ready, method: Box<dyn Method<Simulation>>) -> u64 {
     let settings = simulation.settings(1e-7, 1e-7);
     let events = if simulation.roots() > 0 { 2 } else { 0 };
     let mut run = Integration::new(simulation, method, 0.0, &y, settings).expect("valid");
-    (0..WARM_UP).for_each(|_| drop(step(&mut run)));
+    for _ in 0..WARM_UP {
+        step(&mut run);
+    }
     while run.statistics().events < events {
         step(&mut run);
     }
@@ -60,7 +62,9 @@ fn steps_of_constrained_forms_allocate_nothing() {
         let mut equations = Equations::new(motion, form).with_projection();
         let y = equations.start(0.0, &ready.start.q, &ready.start.v).expect("closed");
         let mut run = Integration::new(equations, method, 0.0, &y, Settings::tolerances(1e-6, 1e-6)).expect("it fits");
-        (0..WARM_UP).for_each(|_| drop(step(&mut run)));
+        for _ in 0..WARM_UP {
+            step(&mut run);
+        }
         let allocated: u64 = (0..COUNTED).map(|_| step(&mut run)).sum();
         assert_eq!(allocated, 0, "{form:?}");
     }

@@ -43,3 +43,4 @@ mod refusals;
 mod resting_contact;
 mod rsrrr;
 mod rsup;
+mod scene_files;

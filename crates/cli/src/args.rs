@@ -25,6 +25,10 @@ pub enum Command {
     Stability(StabilityArgs),
     /// Tell what can move in a scene, where it goes, where it rests, how it vibrates
     Analyse(AnalyseArgs),
+    /// Say all that is wrong with a scene file, else draw its tree and count its freedoms
+    Check(CheckArgs),
+    /// Print the JSON Schema of scene files, for editors
+    Schema,
     /// List the built-in scenes
     Scenes(ScenesArgs),
 }
@@ -32,7 +36,7 @@ pub enum Command {
 /// Options of `linkdyn run`.
 #[derive(Debug, Args)]
 pub struct RunArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
     /// Folder for the results; an earlier run in it is replaced as a whole [default: below out/, named after scene and variant]
     #[arg(short, long, value_name = "DIR")]
@@ -111,7 +115,7 @@ pub struct VariantArgs {
 /// Options of `linkdyn report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     #[arg(required_unless_present = "all")]
     pub scene: Option<String>,
     /// Report on all built-in scenes and their main variants, each with its share of the budget
@@ -153,7 +157,7 @@ pub struct ReportArgs {
 /// Options of `linkdyn stability`.
 #[derive(Debug, Args)]
 pub struct StabilityArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
     /// Folder for the tables; an earlier run in it is replaced as a whole [default: out/stability-, and the name of scene and
     /// variant]
@@ -215,6 +219,13 @@ pub enum AnalysisArg {
     Equilibrium,
     /// Frequencies and damping about the equilibrium
     Modes,
+}
+
+/// Options of `linkdyn check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file, or name of a built-in scene
+    pub scene: String,
 }
 
 /// Options of `linkdyn scenes`.

@@ -2,6 +2,7 @@
 
 pub mod analyse;
 pub mod args;
+pub mod check;
 pub mod errors;
 pub mod figure;
 pub mod interrupt;

@@ -11,6 +11,8 @@ fn main() -> ExitCode {
         Command::Report(args) => linkdyn_cli::report::report(&args),
         Command::Stability(args) => linkdyn_cli::stability::stability(&args),
         Command::Analyse(args) => linkdyn_cli::analyse::analyse(&args),
+        Command::Check(args) => linkdyn_cli::check::check(&args),
+        Command::Schema => linkdyn_cli::check::schema(),
         Command::Scenes(args) => linkdyn_cli::scenes::list(&args),
     })
 }

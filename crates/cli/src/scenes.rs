@@ -1,8 +1,11 @@
-//! The built-in scenes, and what the command line may switch in them.
+//! The built-in scenes and what the command line may switch in them; scene files.
+
+use std::path::{Path, PathBuf};
 
 use linkdyn_mechanisms::Scene;
 use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, bristle, rsrrr, rsup};
 use linkdyn_mechanisms::dynamics::Baumgarte;
+use linkdyn_mechanisms::file;
 use linkdyn_mechanisms::friction::{Bristle, BristleStart, ElastoPlastic, Guard, LuGre};
 
 use crate::args::{BristleArg, ClearanceArg, ScenesArgs, VariantArgs};
@@ -59,17 +62,25 @@ impl Variant {
     }
 }
 
-/// A built-in scene.
+/// A scene: built in, or in a file.
+#[derive(Clone)]
 pub struct Entry {
-    /// Name on the command line.
+    /// Name on the command line; `FILE` for all files.
     pub name: &'static str,
     /// Options of `linkdyn run` that switch something in this scene alone.
     options: &'static [&'static str],
-    make: fn(&Variant) -> Result<Scene, CliError>,
+    make: Make,
     /// What the variant is called in pictures and in the name of the folder.
     label: fn(&Variant) -> String,
     /// Simpler or other variants that pictures show beside this one.
     beside: fn(&Variant) -> Vec<Variant>,
+}
+
+/// How a scene comes to be.
+#[derive(Clone)]
+enum Make {
+    BuiltIn(fn(&Variant) -> Result<Scene, CliError>),
+    File(PathBuf),
 }
 
 /// All built-in scenes.
@@ -77,12 +88,12 @@ pub const SCENES: &[Entry] = &[
     Entry {
         name: "rsrrr",
         options: &["--friction-scale"],
-        make: |variant| {
+        make: Make::BuiltIn(|variant| {
             Ok(rsrrr(&Rsrrr {
                 friction: variant.friction.unwrap_or(false),
                 friction_scale: variant.friction_scale.unwrap_or(1.0),
             }))
-        },
+        }),
         label: |variant| match variant.friction {
             Some(true) => "joint friction".into(),
             _ => "ideal joints".into(),
@@ -101,7 +112,7 @@ pub const SCENES: &[Entry] = &[
             "--flexible",
             "--as-published",
         ],
-        make: make_rsup,
+        make: Make::BuiltIn(make_rsup),
         label: |variant| {
             let joint = match (variant.clearance, variant.friction) {
                 (None, _) => "ideal joint",
@@ -191,16 +202,46 @@ fn friction(model: BristleArg) -> Bristle {
     }
 }
 
-/// The scene of a name.
+/// The scene of a name, or of the path of a scene file: one that ends in `.toml` or leads through folders.
 ///
 /// # Errors
 /// Unknown names, with the nearest known one.
-pub fn find(name: &str) -> Result<&'static Entry, CliError> {
+pub fn find(name: &str) -> Result<Entry, CliError> {
+    if is_file(name) {
+        return Ok(Entry {
+            name: "FILE",
+            options: &[],
+            make: Make::File(name.into()),
+            label: |_| "as in the file".into(),
+            beside: |_| Vec::new(),
+        });
+    }
     let known = || SCENES.iter().map(|entry| entry.name);
-    SCENES
-        .iter()
-        .find(|entry| entry.name == name)
-        .ok_or_else(|| CliError::unknown("scene", name, known()))
+    let entry = SCENES.iter().find(|entry| entry.name == name);
+    entry.cloned().ok_or_else(|| CliError::unknown("scene", name, known()))
+}
+
+fn is_file(name: &str) -> bool {
+    name.ends_with(".toml") || name.contains(std::path::is_separator)
+}
+
+/// Name of a scene without folder and ending.
+pub(crate) fn stem(name: &str) -> &str {
+    let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
+    stem.filter(|_| is_file(name)).unwrap_or(name)
+}
+
+/// The scene of a file.
+///
+/// # Errors
+/// Files that cannot be read; all that is wrong in one.
+pub fn read(path: &Path) -> Result<Scene, CliError> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path);
+    let text = text.map_err(|error| CliError::usage(format!("cannot read `{shown}`")).with_source(error))?;
+    let name = path.to_str().map_or("scene", stem);
+    file::scene(name, &text)
+        .map_err(|error| CliError::usage(format!("scene file `{shown}` is not right")).with_source(error))
 }
 
 impl Entry {
@@ -230,7 +271,14 @@ impl Entry {
             let message = "`--bristle` says nothing with `--no-friction`";
             return Err(CliError::usage(message).with_hint("leave one of them out"));
         }
-        (self.make)(variant)
+        match &self.make {
+            Make::BuiltIn(make) => make(variant),
+            Make::File(_) if variant.friction.is_some() => {
+                let message = "`--friction` and `--no-friction` do not go with scene files";
+                Err(CliError::usage(message).with_hint("write or delete `friction` in the file"))
+            }
+            Make::File(path) => read(path),
+        }
     }
 
     /// What a variant is called.

@@ -260,7 +260,7 @@ fn draw(
 
 /// Where results go if nothing is said.
 pub(crate) fn default_folder(scene: &str, variant: &Variant) -> PathBuf {
-    let mut name = scene.to_owned();
+    let mut name = scenes::stem(scene).to_owned();
     for (given, part) in [
         (variant.friction == Some(true), "friction".to_owned()),
         (variant.clearance == Some(ClearanceArg::Planar), "planar".to_owned()),

@@ -1,0 +1,47 @@
+//! The topology of a linkage as text.
+
+use crate::linkage::{LinkHandle, Linkage};
+use linkdyn_kinematics::Joint;
+use std::fmt::Write;
+
+impl Linkage {
+    /// The tree of links from the ground, one a line behind the joint that carries it, then the cut joints. Links without a way to
+    /// the ground are left out.
+    pub fn outline(&self) -> String {
+        let mut text = "ground\n".to_owned();
+        // A joint is drawn once, so that descriptions that are no tree end as well.
+        let mut drawn = vec![false; self.joints.len()];
+        let mut open: Vec<(usize, LinkHandle)> = vec![(1, Self::GROUND)];
+        while let Some((depth, link)) = open.pop() {
+            let next = (0..self.joints.len()).find(|&k| !drawn[k] && self.joints[k].predecessor.link == link);
+            if let Some(k) = next {
+                drawn[k] = true;
+                let item = &self.joints[k];
+                let (indent, kind, carried) = (2 * depth, kind(&item.joint), self.link_name(item.successor.link));
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "{:indent$}{} ({kind}) - {carried}", "", item.name);
+                open.push((depth, link));
+                open.push((depth + 1, item.successor.link));
+            }
+        }
+        for cut in &self.cuts {
+            let (one, two) = (self.link_name(cut.predecessor.link), self.link_name(cut.successor.link));
+            let _ = writeln!(text, "cut: {one} - {} ({}) - {two}", cut.name, kind(&cut.joint));
+        }
+        text
+    }
+}
+
+fn kind(joint: &Joint) -> &'static str {
+    match joint {
+        Joint::Fixed => "fixed",
+        Joint::Revolute { .. } => "revolute",
+        Joint::Prismatic { .. } => "prismatic",
+        Joint::Cylindrical { .. } => "cylindrical",
+        Joint::Universal { .. } => "universal",
+        Joint::SphericalZyx => "spherical zyx",
+        Joint::Spherical => "spherical",
+        Joint::Planar { .. } => "planar",
+        Joint::Free => "free",
+    }
+}
