@@ -11,7 +11,7 @@ const ABOVE_ROUNDING: f64 = 1e5;
 /// A difference quotient is not a number.
 #[derive(Debug, thiserror::Error)]
 #[error("df/dy is not finite")]
-struct NotFinite;
+pub(crate) struct NotFinite;
 
 /// Writes the first `columns` columns of df/dy at (t, y) by forward differences; the others are left as they are.
 ///

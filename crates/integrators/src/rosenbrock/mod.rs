@@ -3,12 +3,13 @@
 mod tableau;
 
 use crate::control::StepControl;
-use crate::jacobian::differences;
+use crate::jacobian::{NotFinite, differences};
 use crate::reduced::{Layout, Reduced};
 use crate::{Counted, EvalError, Method, Ode, SettingsError, Step, Weights};
 use tableau::{A, C, D, GAMMA, H, STAGES, TIMES};
 
-/// Part of a step over which ∂f/∂t is found by a difference: both its error, which grows with it, and rounding are then far below the error of a step.
+/// Part of a step over which ∂f/∂t is found by a difference. Its error, PART/2 times the second derivative, hardly enters the result (its weight there is
+/// zero where df/dy is), and rounding of f enters as ε/PART, far below the error of a step.
 const PART: f64 = 2e-5;
 
 /// Safety of the step, and weight of the step before (Hairer, Wanner II, IV.7 and IV.8).
@@ -96,6 +97,9 @@ impl Rodas {
             let inverse = 1.0 / (later - t);
             for (rate, f) in self.rate_of_f.iter_mut().zip(&self.f_old) {
                 *rate = (*rate - f) * inverse;
+            }
+            if !self.rate_of_f.iter().all(|rate| rate.is_finite()) {
+                return Err(EvalError::Retry(Box::new(NotFinite)));
             }
         }
         self.known = true;

@@ -155,3 +155,19 @@ fn work() {
     let found = digits(&HIRES, Rodas::default(), 1e-6).1;
     assert_eq!(counters(found), [2027, 1017, 113, 128, 113, 15]);
 }
+
+/// Where f is not finite just where ∂f/∂t is to be found, a shorter step is tried.
+#[test]
+fn a_rate_of_f_that_is_not_finite_is_found_nearer() {
+    let hole = |t: f64, _: &[f64], dy: &mut [f64]| {
+        dy[0] = if (1e-5..2e-5).contains(&t) { f64::NAN } else { t };
+        Ok(())
+    };
+    let settings = Settings {
+        first_step: Some(0.75),
+        ..Settings::tolerances(1e-8, 1e-8)
+    };
+    let (y, found) = solve(Function(1, hole), Rodas::default(), &[0.0], 1.0, settings);
+    assert!((y[0] - 0.5).abs() < 1e-9, "{y:?}");
+    assert_eq!(found.retries, 1);
+}
