@@ -171,6 +171,25 @@ fn crank_error_is_1e_9_with_at_most_3000_evaluations() {
 }
 
 #[test]
+fn tolerance_a_hundredth_cuts_the_error_at_least_tenfold() {
+    let scene = ready_rsrrr(false, 1.0);
+    let table = reference::rsrrr_ideal();
+    let last = table.rows().last().expect("rows");
+    let error = |run: &Finished| distance(&run.rows.last().expect("rows").q, &last[1..5]);
+    let errors = |tolerance| {
+        [
+            error(&simulate(&scene, Adams::default(), tolerance, 5.0, 5.0)),
+            error(&simulate(&scene, Dop853::default(), tolerance, 5.0, 5.0)),
+            error(&simulate(&scene, DormandPrince5::default(), tolerance, 5.0, 5.0)),
+        ]
+    };
+    let (loose, tight) = (errors(1e-7), errors(1e-9));
+    for (loose, tight) in loose.iter().zip(tight) {
+        assert!(tight < 0.1 * loose, "{loose:e} to {tight:e}");
+    }
+}
+
+#[test]
 fn simulations_on_two_threads_repeat_each_other_bit_for_bit() {
     let scene = ready_rsrrr(true, 1.0);
     let alone = simulate(&scene, Dop853::default(), 1e-8, 1.0, 0.1).rows;

@@ -126,7 +126,26 @@ pub fn simulate_with(
     }
 }
 
-/// Largest difference of two sequences of numbers.
+/// Largest difference of two sequences of numbers; NaN if there is one among them.
+///
+/// # Panics
+/// If one is longer than the other.
 pub fn distance<'a>(a: impl IntoIterator<Item = &'a f64>, b: impl IntoIterator<Item = &'a f64>) -> f64 {
-    a.into_iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    let (mut a, mut b) = (a.into_iter(), b.into_iter());
+    let mut worst = 0.0_f64;
+    loop {
+        match (a.next(), b.next()) {
+            (Some(a), Some(b)) => {
+                let difference = (a - b).abs();
+                // Once not a number, always not a number.
+                worst = if difference <= worst || worst.is_nan() {
+                    worst
+                } else {
+                    difference
+                };
+            }
+            (None, None) => return worst,
+            _ => panic!("sequences of unequal length"),
+        }
+    }
 }

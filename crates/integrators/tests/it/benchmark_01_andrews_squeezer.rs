@@ -185,28 +185,7 @@ struct Outcome {
     multipliers: f64,
     /// Changes of E - moment (beta - beta0), and Phi + Omega.
     invariants: [f64; 2],
-    violation: (f64, f64),
     statistics: Statistics,
-}
-
-impl Outcome {
-    fn print(&self, name: &str) {
-        let s = self.statistics;
-        println!(
-            "{name}: angles {:.1e} lambda {:.1e} invariants {:.1e} {:.1e} violation {:.1e} {:.1e} steps {} rejected {} \
-             evaluations {} for matrices {}",
-            self.angles,
-            self.multipliers,
-            self.invariants[0],
-            self.invariants[1],
-            self.violation.0,
-            self.violation.1,
-            s.accepted,
-            s.rejected,
-            s.evaluations,
-            s.jacobian_evaluations
-        );
-    }
 }
 
 fn run<M: Method<Equations<Squeezer>>>(form: Form, projected: bool, method: M, tolerance: f64) -> Outcome {
@@ -226,7 +205,6 @@ fn run<M: Method<Equations<Squeezer>>>(form: Form, projected: bool, method: M, t
     while !matches!(run.advance(END).expect("it ends"), Progress::Done { .. }) {}
     let (statistics, y) = (run.statistics(), run.state().1.to_vec());
     let equations = run.problem_mut();
-    let violation = equations.violation(END, &y).expect("an ordinary state");
     let lambda = match form {
         Form::Explicit => equations.multipliers_at(END, &y).expect("an ordinary state").to_vec(),
         _ => equations.multipliers(&y).to_vec(),
@@ -240,7 +218,6 @@ fn run<M: Method<Equations<Squeezer>>>(form: Form, projected: bool, method: M, t
             .fold(0.0, f64::max),
         multipliers: distance(&lambda, &MULTIPLIERS),
         invariants: [energy.abs(), (y[3] + y[5]).abs()],
-        violation,
         statistics,
     }
 }
@@ -258,7 +235,6 @@ fn the_start_is_the_published_one() {
 
 /// Largest errors of angles and multipliers, of the invariants, and most evaluations.
 fn check(name: &str, outcome: &Outcome, most: [f64; 4], evaluations: u64) {
-    outcome.print(name);
     let found = [
         outcome.angles,
         outcome.multipliers,

@@ -118,7 +118,6 @@ fn orders_of_radau() {
                 .0
         };
         let found = orders(errors, [0.01, 0.005]);
-        println!("{form:?}: {found:?} {:?}", errors(0.005));
         for (found, expected) in found.iter().zip(expected) {
             assert!(
                 (found - expected).abs() < 0.5,
@@ -153,7 +152,6 @@ fn orders_of_generalised_alpha() {
             run(equations, method(h), Settings::default(), 1.0).expect("it ends").0
         };
         let found = orders(errors, [0.002, 0.001]);
-        println!("{name}: {found:?} {:?}", errors(0.001));
         for found in found {
             assert!((found - 2.0).abs() < 0.3, "{name}: {found}");
         }
@@ -180,7 +178,6 @@ fn radau_by_tolerance() {
         };
         let settings = Settings::tolerances(tolerance, tolerance);
         let (errors, statistics, violation) = run(equations, Radau5::default(), settings, 10.0).expect("it ends");
-        println!("{form:?} {projected}: {errors:?} {violation:?} {statistics:?}");
         for (error, most) in errors.iter().zip([most_q, most_v, most_lambda]) {
             assert!(*error < most * tolerance, "{form:?} {projected}: {errors:?}");
         }
@@ -209,7 +206,6 @@ fn generalised_alpha_by_tolerance() {
             run(equations, GeneralisedAlpha::default(), settings, 2.0).expect("it ends")
         };
         let ((rough, _, _), (fine, statistics, violation)) = (solve(1e-5), solve(1e-8));
-        println!("{projected}: {rough:?} {fine:?} {violation:?} {statistics:?}");
         // Local errors of order 3, global ones of order 2: a thousandth of the tolerance is a hundredth of the error. Multipliers feel
         // every change of the step unless rates are projected.
         let known = if projected { 3 } else { 2 };
