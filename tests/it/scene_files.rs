@@ -1,11 +1,15 @@
 //! Scene files against closed forms and against the same linkages in Rust; broken ones.
 
+use linkdyn_integrators::Auto;
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
-use linkdyn_mechanisms::{Edge, Role, Scene, file, spanning_tree};
+use linkdyn_mechanisms::{Edge, Observation, Role, Scene, file, spanning_tree};
+use linkdyn_tests::scenes::{prepare, simulate};
 
 const FOUR_BAR: &str = include_str!("../../crates/mechanisms/scenes/four_bar.toml");
 const RSRRR: &str = include_str!("../../crates/mechanisms/scenes/rsrrr.toml");
 const RSRRR_FRICTION: &str = include_str!("../../crates/mechanisms/scenes/rsrrr_friction.toml");
+const SLIDER_CRANK: &str = include_str!("../../crates/mechanisms/scenes/slider_crank.toml");
+const RSSR: &str = include_str!("../../crates/mechanisms/scenes/rssr.toml");
 
 fn read(text: &str) -> Scene {
     file::scene("file", text).expect("a sound file")
@@ -30,6 +34,39 @@ fn four_bar_closes_as_the_closed_form_says() {
         "{} instead of {rocker}",
         state.q[2]
     );
+}
+
+/// A coordinate of a scene at its start.
+fn closed(scene: &Scene, name: &str) -> f64 {
+    let mechanism = scene.linkage.build().expect("a linkage");
+    let (state, _) = mechanism.assemble(&scene.start).expect("closes");
+    let place = mechanism.coordinate_names().position(|there| there == name);
+    state.q[place.expect("a coordinate")]
+}
+
+#[test]
+fn slider_crank_and_rssr_close_as_the_closed_forms_say() {
+    let (r, l, angle) = (0.1_f64, 0.3_f64, 0.6_f64);
+    let slide = r * angle.cos() + (l * l - (r * angle.sin()).powi(2)).sqrt();
+    let found = closed(&read(SLIDER_CRANK), "slide");
+    assert!((found - slide).abs() < 1e-12, "{found} instead of {slide}");
+    // Published for 30 degrees, benchmark 22-closed-form-loops.
+    let found = closed(&read(RSSR), "phi");
+    assert!((found - 0.283_361_851_723_81).abs() < 1e-12, "{found}");
+}
+
+/// One freedom each, and a motion that keeps its energy balance.
+#[test]
+fn files_run() {
+    for text in [FOUR_BAR, SLIDER_CRANK, RSSR] {
+        let scene = read(text);
+        let ready = prepare(scene);
+        let run = simulate(&ready, Auto::default(), 1e-10, 0.5, 0.05);
+        run.end.expect("runs");
+        let energy = |o: &Observation| o.energy.kinetic + o.energy.potential - o.work;
+        let (first, last) = (energy(&run.rows[0]), energy(run.rows.last().expect("rows")));
+        assert!((last - first).abs() < 1e-8, "{first} {last}");
+    }
 }
 
 #[test]
@@ -139,7 +176,7 @@ fn a_thousand_broken_files_are_refused_or_read_and_never_panic() {
     ];
     let mut refused = 0;
     for k in 0..1000 {
-        let source = [FOUR_BAR, RSRRR, RSRRR_FRICTION][k % 3];
+        let source = [FOUR_BAR, RSRRR, RSRRR_FRICTION, SLIDER_CRANK, RSSR][k % 5];
         let mut tokens: Vec<&str> = source.split_inclusive([' ', '\n']).collect();
         for _ in 0..=dice.below(3) {
             let (at, other) = (dice.below(tokens.len()), dice.below(tokens.len()));
