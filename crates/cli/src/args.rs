@@ -27,6 +27,8 @@ pub enum Command {
     Analyse(AnalyseArgs),
     /// Say all that is wrong with a scene file, else draw its tree and count its freedoms
     Check(CheckArgs),
+    /// Write a commented scene file to begin with
+    New(NewArgs),
     /// Print the JSON Schema of scene files, for editors
     Schema,
     /// List the built-in scenes
@@ -226,6 +228,13 @@ pub enum AnalysisArg {
 pub struct CheckArgs {
     /// Scene file, or name of a built-in scene
     pub scene: String,
+}
+
+/// Options of `linkdyn new`.
+#[derive(Debug, Args)]
+pub struct NewArgs {
+    /// File to write, which must not be there yet
+    pub file: PathBuf,
 }
 
 /// Options of `linkdyn scenes`.

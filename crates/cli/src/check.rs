@@ -1,8 +1,11 @@
-//! `linkdyn check` and `linkdyn schema`: what a scene file says, and what one may say.
+//! `linkdyn check`, `linkdyn new` and `linkdyn schema`: what a scene file says, one to begin with, and what one may say.
+
+use std::fs::OpenOptions;
+use std::io::Write;
 
 use linkdyn_mechanisms::{Mechanism, Start, State, file};
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, NewArgs};
 use crate::errors::CliError;
 use crate::output;
 use crate::run::ready;
@@ -35,6 +38,24 @@ fn loops(mechanism: &Mechanism, state: &State) -> Result<(usize, usize), CliErro
     let closed = mechanism.assemble(&start);
     let (_, closed) = closed.map_err(|error| CliError::failed("the loops do not stay closed").with_source(error))?;
     Ok((closed.equations, closed.rank))
+}
+
+/// `linkdyn new`.
+///
+/// # Errors
+/// A file that is there already, or cannot be written.
+pub fn new(args: &NewArgs) -> Result<(), CliError> {
+    let path = args.file.display();
+    let file = OpenOptions::new().write(true).create_new(true).open(&args.file);
+    let written = file.and_then(|mut file| file.write_all(file::TEMPLATE.as_bytes()));
+    written.map_err(|error| {
+        CliError::usage(format!("cannot write `{path}`"))
+            .with_source(error)
+            .with_hint("give the name of a file that is not there yet, in a folder that is")
+    })?;
+    output::print(&format!(
+        "wrote {path}; `linkdyn check {path}` tells what it is, `linkdyn run {path}` runs it\n"
+    ))
 }
 
 /// `linkdyn schema`.

@@ -31,6 +31,9 @@ use crate::mechanism::Start;
 use crate::scene::Scene;
 use fault::{Faults, nearest, refused};
 
+/// A commented scene file to begin with: a four-bar.
+pub const TEMPLATE: &str = include_str!("../../scenes/four_bar.toml");
+
 /// The JSON Schema of scene files, for editors.
 pub fn schema() -> serde_json::Value {
     schemars::schema_for!(SceneFile).to_value()

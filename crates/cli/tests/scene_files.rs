@@ -1,0 +1,58 @@
+//! The program with scene files of its user.
+
+use std::fs;
+use std::process::{Command, Output};
+
+fn linkdyn(words: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_linkdyn"));
+    program.args(words).output().expect("the program starts")
+}
+
+fn said(run: &Output) -> String {
+    String::from_utf8_lossy(&run.stdout).into_owned() + &String::from_utf8_lossy(&run.stderr)
+}
+
+#[test]
+fn a_new_file_is_checked_run_and_never_overwritten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("mine.toml");
+    let (file, out) = (file.display().to_string(), folder.path().join("out"));
+    let made = linkdyn(&["new", &file]);
+    assert_eq!(made.status.code(), Some(0), "{}", said(&made));
+
+    let checked = linkdyn(&["check", &file]);
+    assert!(
+        said(&checked).contains("degrees of freedom at start 1"),
+        "{}",
+        said(&checked)
+    );
+    let run = linkdyn(&["run", &file, "--until", "0.1", "--out", &out.display().to_string()]);
+    assert_eq!(run.status.code(), Some(0), "{}", said(&run));
+    assert!(out.join("states.csv").is_file() && out.join("run.json").is_file());
+
+    let before = fs::read_to_string(&file).expect("the file");
+    let again = linkdyn(&["new", &file]);
+    assert_eq!(again.status.code(), Some(2), "{}", said(&again));
+    assert!(said(&again).contains("not there yet"), "{}", said(&again));
+    assert_eq!(fs::read_to_string(&file).expect("the file"), before);
+}
+
+#[test]
+fn a_wrong_key_is_told_with_its_place_and_the_right_word() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("broken.toml");
+    fs::write(&file, "format = 1\n[links.rod]\nmas = 1\n").expect("written");
+    let checked = linkdyn(&["check", &file.display().to_string()]);
+    assert_eq!(checked.status.code(), Some(2), "{}", said(&checked));
+    assert!(
+        said(&checked).contains("line 3, column 1") && said(&checked).contains("did you mean `mass`?"),
+        "{}",
+        said(&checked)
+    );
+}
+
+#[test]
+fn the_schema_is_json() {
+    let schema: serde_json::Value = serde_json::from_slice(&linkdyn(&["schema"]).stdout).expect("JSON");
+    assert!(schema["properties"]["joints"].is_object(), "{schema}");
+}
