@@ -43,4 +43,5 @@ mod refusals;
 mod resting_contact;
 mod rsrrr;
 mod rsup;
+mod scene_examples;
 mod scene_files;

@@ -36,26 +36,7 @@ fn four_bar_closes_as_the_closed_form_says() {
     );
 }
 
-/// A coordinate of a scene at its start.
-fn closed(scene: &Scene, name: &str) -> f64 {
-    let mechanism = scene.linkage.build().expect("a linkage");
-    let (state, _) = mechanism.assemble(&scene.start).expect("closes");
-    let place = mechanism.coordinate_names().position(|there| there == name);
-    state.q[place.expect("a coordinate")]
-}
-
-#[test]
-fn slider_crank_and_rssr_close_as_the_closed_forms_say() {
-    let (r, l, angle) = (0.1_f64, 0.3_f64, 0.6_f64);
-    let slide = r * angle.cos() + (l * l - (r * angle.sin()).powi(2)).sqrt();
-    let found = closed(&read(SLIDER_CRANK), "slide");
-    assert!((found - slide).abs() < 1e-12, "{found} instead of {slide}");
-    // Published for 30 degrees, benchmark 22-closed-form-loops.
-    let found = closed(&read(RSSR), "phi");
-    assert!((found - 0.283_361_851_723_81).abs() < 1e-12, "{found}");
-}
-
-/// One freedom each, and a motion that keeps its energy balance.
+/// Motions that keep their energy balance.
 #[test]
 fn files_run() {
     for text in [FOUR_BAR, SLIDER_CRANK, RSSR] {

@@ -1,5 +1,6 @@
 //! The format of scene files. These structs are the one source of what is read, of the JSON Schema and of its descriptions.
 
+use super::quantity::Quantity;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -32,7 +33,7 @@ fn earth() -> [f64; 3] {
     [0.0, 0.0, -9.81]
 }
 
-/// A rigid link: either `cylinder`, or `mass` with `centre` and `inertia`.
+/// A rigid link: `cylinder`, `box`, or `mass` with `centre` and `inertia`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinkItem {
@@ -44,6 +45,9 @@ pub struct LinkItem {
     pub inertia: Option<[[f64; 3]; 3]>,
     /// A solid cylinder from the origin of the link's frame, in place of mass, centre and inertia.
     pub cylinder: Option<CylinderItem>,
+    /// A solid box with edges along the axes of the link's frame, in place of mass, centre and inertia.
+    #[serde(rename = "box")]
+    pub cuboid: Option<CuboidItem>,
 }
 
 /// A solid cylinder.
@@ -56,6 +60,19 @@ pub struct CylinderItem {
     pub diameter: f64,
     /// From its beginning, the origin of the link's frame, to its end \[m\].
     pub along: [f64; 3],
+}
+
+/// A solid box.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CuboidItem {
+    /// Density \[kg/m^3\].
+    pub density: f64,
+    /// Its edges along x, y and z \[m\].
+    pub size: [f64; 3],
+    /// Its middle in the link's frame \[m\]; the origin unless given.
+    #[serde(default)]
+    pub centre: [f64; 3],
 }
 
 /// A joint between two links.
@@ -123,6 +140,18 @@ pub struct MountItem {
     pub point: [f64; 3],
     /// Rotation matrix of the joint's frame, row by row: its columns are the joint's axes in axes of the link. None unless given.
     pub rotation: Option<[[f64; 3]; 3]>,
+    /// A turn of the joint's frame against the link's, in place of `rotation`.
+    pub turn: Option<TurnItem>,
+}
+
+/// A turn about an axis.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TurnItem {
+    /// Axis, of any length but zero.
+    pub axis: [f64; 3],
+    /// Angle \[rad\], or a text like `"30 deg"`.
+    pub angle: Quantity,
 }
 
 /// A drive or resistance.
@@ -235,9 +264,9 @@ pub struct SurfaceItem {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StartItem {
-    /// Guessed coordinates \[rad, m\]; zero unless given.
+    /// Guessed coordinates \[rad, m\], angles also as texts like `"30 deg"`; zero unless given.
     #[serde(default)]
-    pub positions: IndexMap<String, f64>,
+    pub positions: IndexMap<String, Quantity>,
     /// Coordinates that keep their guessed value and speed while the loops are closed.
     #[serde(default)]
     pub held: Vec<String>,

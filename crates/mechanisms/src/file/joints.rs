@@ -9,7 +9,7 @@ use crate::spline::Spline;
 use crate::spring::Spring;
 use linkdyn_friction::{BearingModel, Characteristic, Exponential, JournalBearing, Surface};
 use linkdyn_kinematics::{Joint, Pose};
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Rotation3, Unit, Vector3};
 
 /// Adds all joints, in the order of the file.
 pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) {
@@ -169,10 +169,29 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
             }
         },
     };
-    let rows = item
-        .rotation
-        .unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-    let pose = Pose::from_rows(rows, item.point);
+    let pose = match (item.rotation, item.turn) {
+        (Some(rows), None) => Pose::from_rows(rows, item.point),
+        (None, None) => Pose::translation(item.point[0], item.point[1], item.point[2]),
+        (None, Some(turn)) => {
+            let axis = Unit::try_new(Vector3::from(turn.axis), f64::MIN_POSITIVE);
+            let Some(axis) = axis.filter(|axis| axis.iter().all(|x| x.is_finite())) else {
+                let message = "must be three finite numbers, not all zero";
+                faults.add(&["joints", name, side, "turn", "axis"], message);
+                return None;
+            };
+            Pose {
+                rotation: *Rotation3::from_axis_angle(&axis, turn.angle.0).matrix(),
+                origin: Vector3::from(item.point),
+            }
+        }
+        (Some(_), Some(_)) => {
+            faults.add(
+                &["joints", name, side, "turn"],
+                "says again what `rotation` says; give one of them",
+            );
+            return None;
+        }
+    };
     let defect = pose.defect();
     if defect.is_nan() || defect > 1e-9 {
         let message = format!(

@@ -22,9 +22,11 @@ mod fault;
 mod format;
 mod joints;
 mod links;
+mod quantity;
 
 pub use fault::{Fault, SceneFileError};
 pub use format::*;
+pub use quantity::Quantity;
 
 use crate::linkage::Linkage;
 use crate::mechanism::Start;
@@ -67,16 +69,19 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         return Err(SceneFileError(faults.found));
     }
     let first = linkage.joints.iter().flat_map(|joint| joint.coordinates()).next();
-    let list =
-        |given: &indexmap::IndexMap<String, f64>| given.iter().map(|(name, &value)| (name.clone(), value)).collect();
     Ok(Scene {
         name: name.to_owned(),
         summary: file.summary,
         linkage,
         start: Start {
-            positions: list(&file.start.positions),
+            positions: file
+                .start
+                .positions
+                .into_iter()
+                .map(|(name, Quantity(value))| (name, value))
+                .collect(),
             held: file.start.held,
-            speeds: list(&file.start.speeds),
+            speeds: file.start.speeds.into_iter().collect(),
         },
         until: file.run.until,
         reactions: file.run.reactions,
@@ -111,10 +116,14 @@ fn check_start(file: &SceneFile, linkage: &Linkage, faults: &mut Faults<'_>) {
             check(&["run", key], name);
         }
     }
-    for (key, values) in [("positions", &file.start.positions), ("speeds", &file.start.speeds)] {
-        for (name, value) in values.iter().filter(|(_, value)| !value.is_finite()) {
-            faults.add(&["start", key, name], format!("{value} must be a finite number"));
-        }
+    let positions = file
+        .start
+        .positions
+        .iter()
+        .map(|(name, value)| ("positions", name, value.0));
+    let speeds = file.start.speeds.iter().map(|(name, &value)| ("speeds", name, value));
+    for (key, name, value) in positions.chain(speeds).filter(|(.., value)| !value.is_finite()) {
+        faults.add(&["start", key, name], format!("{value} must be a finite number"));
     }
     let until = file.run.until;
     if !(until.is_finite() && until > 0.0) {
