@@ -5,7 +5,7 @@ use linkdyn_integrators::{
 };
 use proptest::prelude::*;
 
-use crate::problems::{Counting, Kink};
+use crate::problems::{Counting, Kink, boxed};
 
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -25,7 +25,7 @@ fn run<M: Method<Counting<Kink>>>(method: M, t: [f64; 2], y0: [f64; 3], [relativ
         max_steps: 300,
         ..Settings::tolerances(relative, absolute)
     };
-    let Ok(mut run) = Integration::new(Counting::new(Kink), method, t[0], &y0, settings) else {
+    let Ok(mut run) = Integration::new(Counting::new(Kink), boxed(method), t[0], &y0, settings) else {
         return;
     };
     let mut y = [0.0; 3];

@@ -5,7 +5,7 @@ use linkdyn_integrators::{
     Settings, Statistics, Terms,
 };
 
-use crate::problems::distance;
+use crate::problems::{boxed, distance};
 
 const END: f64 = 0.03;
 const MOMENT: f64 = 0.033;
@@ -201,7 +201,7 @@ fn run<M: Method<Equations<Squeezer>>>(form: Form, projected: bool, method: M, t
     absolute[7..].fill(1e3 * tolerance);
     let settings = Settings::tolerances(tolerance, absolute);
     let start = Squeezer::energy(&y[..7], &y[7..14]);
-    let mut run = Integration::new(equations, method, 0.0, &y, settings).expect("it fits");
+    let mut run = Integration::new(equations, boxed(method), 0.0, &y, settings).expect("it fits");
     while !matches!(run.advance(END).expect("it ends"), Progress::Done { .. }) {}
     let (statistics, y) = (run.statistics(), run.state().1.to_vec());
     let equations = run.problem_mut();

@@ -6,7 +6,7 @@ use linkdyn_integrators::{
     Radau5, Settings, SettingsError, Statistics, Terms,
 };
 
-use crate::problems::{Function, solve};
+use crate::problems::{Function, boxed, solve};
 
 /// x² + y² = 1 under g = 9.81: M = 1, released at (−1, 0).
 #[derive(Clone)]
@@ -74,7 +74,7 @@ fn run<M: Method<Equations<Pendulum>>>(
     end: f64,
 ) -> Result<Outcome, IntegrationError> {
     let y = equations.start(0.0, &START[0], &START[1]).expect("consistent");
-    let mut run = Integration::new(equations, method, 0.0, &y, settings)?;
+    let mut run = Integration::new(equations, boxed(method), 0.0, &y, settings)?;
     while !matches!(run.advance(end)?, Progress::Done { .. }) {}
     let (statistics, y) = (run.statistics(), run.state().1.to_vec());
     let equations = run.problem_mut();

@@ -5,7 +5,7 @@ use linkdyn_integrators::{
     SecondOrder, Settings,
 };
 
-use crate::problems::{Damped, Kink, Rational, distance, solve};
+use crate::problems::{Damped, Kink, Rational, boxed, distance, solve};
 
 /// Least-squares slope of log₂ error over halvings of the step.
 fn slope(errors: &[f64]) -> f64 {
@@ -126,7 +126,8 @@ fn dense_error<P: SecondOrder, M: Method<P>>(
     y0: &[f64],
     exact: impl Fn(f64) -> [f64; 3],
 ) -> f64 {
-    let mut run = Integration::new(problem, method, 0.0, y0, Settings::tolerances(1e-9, 1e-9)).expect("good settings");
+    let mut run =
+        Integration::new(problem, boxed(method), 0.0, y0, Settings::tolerances(1e-9, 1e-9)).expect("good settings");
     let (mut y, mut worst) = ([0.0; 3], 0.0_f64);
     loop {
         let progress = run.advance(1.5).expect("smooth");

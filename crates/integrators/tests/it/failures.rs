@@ -7,7 +7,7 @@ use linkdyn_integrators::{
     NotSettled, Ode, Progress, Radau5, Rk4, Rodas, Settings,
 };
 
-use crate::problems::{Damped, Function, Kink};
+use crate::problems::{Damped, Function, Kink, boxed};
 
 type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), EvalError>;
 
@@ -20,7 +20,7 @@ fn failure<P: Ode, M: Method<P>>(
     end: f64,
     settings: Settings,
 ) -> (IntegrationError, f64) {
-    let mut run = Integration::new(problem, method, t0, y0, settings).expect("good settings");
+    let mut run = Integration::new(problem, boxed(method), t0, y0, settings).expect("good settings");
     for _ in 0..1_000_000 {
         match run.advance(end) {
             Ok(Progress::Done { .. }) => panic!("reached the end"),

@@ -5,11 +5,12 @@ use linkdyn_integrators::{
     Radau5, Rk4, Rodas, Settings,
 };
 
-use crate::problems::{Counting, Damped, Kink, Pleiades, distance, finish};
+use crate::problems::{Counting, Damped, Kink, Pleiades, boxed, distance, finish};
 
 /// All steps of a run there and back again, with stops; `outputs` places of output in each step.
 fn path<P: Ode, M: Method<P>>(problem: P, method: M, y0: &[f64], outputs: usize) -> Vec<(f64, Vec<u64>)> {
-    let run = Integration::new(problem, method, 0.0, y0, Settings::tolerances(1e-7, 1e-7)).expect("good settings");
+    let run =
+        Integration::new(problem, boxed(method), 0.0, y0, Settings::tolerances(1e-7, 1e-7)).expect("good settings");
     let mut run = run.with_stops(&[0.3, 0.7, 0.7_f64.next_up()]).expect("finite");
     let (mut path, mut y) = (Vec::new(), vec![0.0; y0.len()]);
     for end in [1.5, -0.5] {
@@ -62,7 +63,7 @@ fn interpolation_is_continuous_from_step_to_step() {
         let mut problem = Counting::new(Pleiades);
         problem.claim = true;
         let settings = Settings::tolerances(1e-6, 1e-6);
-        let mut run = Integration::new(problem, method, 0.0, &Pleiades::START, settings).expect("good settings");
+        let mut run = Integration::new(problem, boxed(method), 0.0, &Pleiades::START, settings).expect("good settings");
         let (mut near_end, mut near_start) = ([0.0; 28], [0.0; 28]);
         for _ in 0..15 {
             run.advance(3.0).expect("smooth");

@@ -196,9 +196,14 @@ pub fn solve<P: Ode, M: Method<P>>(
     end: f64,
     settings: Settings,
 ) -> (Vec<f64>, Statistics) {
-    let mut run = Integration::new(problem, method, 0.0, y0, settings).expect("good settings");
+    let mut run = Integration::new(problem, boxed(method), 0.0, y0, settings).expect("good settings");
     let y = finish(&mut run, end);
     (y, run.statistics())
+}
+
+/// A method behind a pointer: the driver is then compiled once for a problem, not once for each method too.
+pub fn boxed<'a, P: ?Sized>(method: impl Method<P> + 'a) -> Box<dyn Method<P> + 'a> {
+    Box::new(method)
 }
 
 /// Largest difference.

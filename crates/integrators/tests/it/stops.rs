@@ -5,7 +5,7 @@ use linkdyn_integrators::{
     Radau5, Rk4, Rodas, SecondOrder, Settings,
 };
 
-use crate::problems::{Damped, Function, distance, finish};
+use crate::problems::{Damped, Function, boxed, distance, finish};
 
 /// y' = min(t, 1): y(3) = 2.5, and z' = z.
 struct Ramp;
@@ -29,7 +29,8 @@ impl SecondOrder for Ramp {
 #[test]
 fn stops_are_hit_exactly() {
     fn check<M: Method<Ramp>>(method: M, tolerance: f64) {
-        let run = Integration::new(Ramp, method, 0.0, &[0.0, 1.0], Settings::tolerances(1e-9, 1e-9)).expect("good");
+        let run =
+            Integration::new(Ramp, boxed(method), 0.0, &[0.0, 1.0], Settings::tolerances(1e-9, 1e-9)).expect("good");
         let stops = [2.0 / 3.0, 1.0, -4.0, 0.1 + 0.2, 3.0, 7.0];
         let mut run = run.with_stops(&stops).expect("finite");
         let mut seen = Vec::new();
@@ -109,7 +110,7 @@ fn stops_of_all_kinds() {
             expected.push(end);
             let watched = Watched { bounds: [0.0, 0.0] };
             let settings = Settings::tolerances(1e-9, 1e-9);
-            let run = Integration::new(watched, method(), start, &[1.0], settings).expect("good settings");
+            let run = Integration::new(watched, boxed(method()), start, &[1.0], settings).expect("good settings");
             let run = run.with_stops(&[2.25, -4.0, 2.0, 7.0, 1.0]).expect("finite");
             let mut run = run.with_stops(&inner).expect("finite");
             let mut seen = Vec::new();
@@ -221,7 +222,8 @@ fn a_problem_switched_at_a_stop() {
         }
     }
     fn check<M: Method<Switched>>(method: M) {
-        let run = Integration::new(Switched(1.0), method, 0.0, &[0.0], Settings::default()).expect("good settings");
+        let run =
+            Integration::new(Switched(1.0), boxed(method), 0.0, &[0.0], Settings::default()).expect("good settings");
         let mut run = run.with_stops(&[1.0]).expect("finite");
         loop {
             match run.advance(2.0).expect("constant") {
@@ -264,7 +266,7 @@ impl Ode for Circle {
 fn projection_keeps_the_invariant_at_every_step() {
     fn check<M: Method<Circle>>(method: M) {
         let settings = Settings::tolerances(1e-7, 1e-7);
-        let mut run = Integration::new(Circle, method, 0.0, &[1.0, 0.0], settings).expect("good settings");
+        let mut run = Integration::new(Circle, boxed(method), 0.0, &[1.0, 0.0], settings).expect("good settings");
         while !matches!(run.advance(50.0).expect("smooth"), Progress::Done { .. }) {
             let y = run.state().1;
             assert!((y[0].hypot(y[1]) - 1.0).abs() < 1e-15);

@@ -4,7 +4,7 @@ use linkdyn_integrators::{
     Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Rodas, Settings,
 };
 
-use crate::problems::{Damped, Function, Kink, Pleiades, distance, finish, solve};
+use crate::problems::{Damped, Function, Kink, Pleiades, boxed, distance, finish, solve};
 
 /// Two digits more of tolerance must buy at least one digit of accuracy, down to rounding.
 fn responds<P: Ode, M: Method<P>>(
@@ -115,7 +115,7 @@ fn each_component_has_its_own_tolerance() {
 fn backward_and_back() {
     fn there_and_back<M: Method<Damped>>(method: M) {
         let settings = Settings::tolerances(1e-11, 1e-12);
-        let mut run = Integration::new(Damped, method, 0.0, &Damped::START, settings).expect("good settings");
+        let mut run = Integration::new(Damped, boxed(method), 0.0, &Damped::START, settings).expect("good settings");
         assert!(distance(&finish(&mut run, 5.0), &Damped::exact(5.0)) < 1e-9);
         assert!(distance(&finish(&mut run, -2.0), &Damped::exact(-2.0)) < 1e-9);
         let (from, to) = run.last_step();

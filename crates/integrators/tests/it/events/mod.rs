@@ -11,6 +11,8 @@ use linkdyn_integrators::{
     Ode, Progress, Radau5, Rk4, Rodas, SecondOrder, Settings,
 };
 
+use crate::problems::boxed;
+
 type Answer = Result<(), EvalError>;
 
 /// A problem stated by three functions: right-hand side, root functions, and what events do to the state and to a number kept beside
@@ -133,8 +135,21 @@ pub fn events_until_failure<P: Ode, M: Method<P>>(
     panic!("no end");
 }
 
-pub fn start<P: Ode, M: Method<P>>(problem: P, method: M, t0: f64, y0: &[f64], tolerance: f64) -> Integration<P, M> {
-    Integration::new(problem, method, t0, y0, Settings::tolerances(tolerance, tolerance)).expect("good settings")
+pub fn start<'a, P: Ode>(
+    problem: P,
+    method: impl Method<P> + 'a,
+    t0: f64,
+    y0: &[f64],
+    tolerance: f64,
+) -> Integration<P, Box<dyn Method<P> + 'a>> {
+    Integration::new(
+        problem,
+        boxed(method),
+        t0,
+        y0,
+        Settings::tolerances(tolerance, tolerance),
+    )
+    .expect("good settings")
 }
 
 /// Times differ by less.
