@@ -63,36 +63,42 @@ impl System {
         }
         self.own_wrenches(work);
 
-        let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
-        let singular = |(speed, pivot)| DynamicsError::SingularMass { time: t, speed, pivot };
-        match &mut work.mass {
-            MassFactor::Composite(mass) => {
-                if self.formulation == Formulation::Lagrange {
-                    let equations = lagrange::equations(self, q, v);
-                    equations.write(mass.matrix_mut(), &mut work.columns, &mut work.constraint.gamma);
-                } else {
-                    work.wrenches.copy_from_slice(&work.own);
-                    mass.assemble(nodes, positions, &work.inertias, &mut work.wrenches, &mut work.columns);
-                }
-                mass.factor().map_err(singular)?;
-                self.closure_columns(work);
-                if let MassFactor::Composite(mass) = &work.mass {
-                    mass.inward(&mut work.columns);
-                }
+        let factored = match &mut work.mass {
+            MassFactor::Composite(mass) if self.formulation == Formulation::Lagrange => {
+                let equations = lagrange::equations(self, q, v);
+                equations.write(mass.matrix_mut(), &mut work.columns, &mut work.constraint.gamma);
+                mass.factor()
             }
+            _ => self.factor_mass(work),
+        };
+        factored.map_err(|(speed, pivot)| DynamicsError::SingularMass { time: t, speed, pivot })?;
+        self.closure_columns(work);
+        match &mut work.mass {
+            MassFactor::Composite(mass) => mass.inward(&mut work.columns),
             MassFactor::Articulated(mass) => {
-                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns)
-                    .map_err(singular)?;
-                self.closure_columns(work);
-                if let MassFactor::Articulated(mass) = &mut work.mass {
-                    let first_unit = self.first_unit();
-                    for column in (1..=self.equations).chain(first_unit..first_unit + self.reaction_loads.len()) {
-                        mass.inward(nodes, work.positions.nodes(), &mut work.columns, column);
-                    }
+                let (nodes, first_unit) = (self.tree.nodes(), self.first_unit());
+                for column in (1..=self.equations).chain(first_unit..first_unit + self.reaction_loads.len()) {
+                    mass.inward(nodes, work.positions.nodes(), &mut work.columns, column);
                 }
             }
         }
         Ok(())
+    }
+
+    /// Factors of the mass matrix from the links' own inertias, their own wrenches taken inward; else speed and pivot that are singular.
+    #[inline]
+    pub(crate) fn factor_mass(&self, work: &mut Workspace) -> Result<(), (usize, f64)> {
+        let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+        match &mut work.mass {
+            MassFactor::Composite(mass) => {
+                work.wrenches.copy_from_slice(&work.own);
+                mass.assemble(nodes, positions, &work.inertias, &mut work.wrenches, &mut work.columns);
+                mass.factor()
+            }
+            MassFactor::Articulated(mass) => {
+                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns)
+            }
+        }
     }
 
     /// Generalised forces and outside wrenches of all loads, and the power of those that are not conservative.

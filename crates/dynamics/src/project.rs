@@ -44,31 +44,13 @@ impl System {
         if self.closures.is_empty() {
             return true;
         }
-        let (gravity, nodes) = (-self.gravity, self.tree.nodes());
-        self.tree.sweep(
-            q,
-            v,
-            &gravity,
-            &mut work.positions,
-            &mut work.velocities,
-            &mut work.biases,
-        );
+        let base = -self.gravity;
+        self.tree
+            .sweep(q, v, &base, &mut work.positions, &mut work.velocities, &mut work.biases);
         work.own.fill(Wrench::zero());
         self.own_wrenches(work);
         work.columns.clear();
-        match &mut work.mass {
-            MassFactor::Composite(mass) => {
-                let (positions, inertias) = (work.positions.nodes(), &work.inertias);
-                work.wrenches.copy_from_slice(&work.own);
-                mass.assemble(nodes, positions, inertias, &mut work.wrenches, &mut work.columns);
-                mass.factor().is_ok()
-            }
-            MassFactor::Articulated(mass) => {
-                let positions = work.positions.nodes();
-                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns)
-                    .is_ok()
-            }
-        }
+        self.factor_mass(work).is_ok()
     }
 
     fn project_by_metric(
