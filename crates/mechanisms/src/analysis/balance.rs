@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 const FRICTION_ITERATIONS: usize = 100;
 /// Residual of friction over the largest friction that counts as solved: that of [`linkdyn_dynamics::ReactionSolver`].
 const FRICTION_TOLERANCE: f64 = 1e-12;
-/// Half-width of the four-point differences [`Balance::slope`] \[rad, m, 1/s\]: their error is of the order of its fourth power, rounding
+/// Half-width of the four-point differences [`Balance::slopes`] \[rad, m, 1/s\]: their error is of the order of its fourth power, rounding
 /// that of the forces over it.
 const DIFFERENCE: f64 = 1e-3;
 
@@ -34,6 +34,15 @@ pub(super) struct Balance<'a> {
     dependent: Vec<usize>,
     /// The independent speeds.
     pub independent: Vec<usize>,
+}
+
+/// By what forces are differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum By {
+    /// The independent positions: gives the stiffness.
+    Position,
+    /// The independent speeds: gives the damping, gyroscopic terms included.
+    Speed,
 }
 
 /// Speeds and their rates that keep the loops closed.
@@ -279,24 +288,25 @@ impl<'a> Balance<'a> {
         })
     }
 
-    /// Derivative by four-point differences of the forces at independent speeds and rates `(z', z'')` displaced along column `k`: of
-    /// the position where `what` is 0, of `z'` where it is 1.
+    /// Derivative by four-point differences of the forces at independent speeds and rates `(z', z'')` displaced along column `k`.
     fn slope(
         &mut self,
+        by: By,
         (t, q): (f64, &[f64]),
         (rates, second): (&[f64], &[f64]),
         tangent: &DMatrix<f64>,
-        (what, k): (usize, usize),
+        k: usize,
     ) -> Result<DVector<f64>, AnalysisError> {
         let mut slope = DVector::zeros(rates.len());
         for (places, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
             let (mut at, mut speeds) = (q.to_vec(), rates.to_vec());
-            if what == 0 {
-                // The straight way leaves the loops by the square of the step only, which is none in the derivative.
-                let step = tangent.column(k) * (places * DIFFERENCE);
-                self.mechanism.system().tree().displace(&mut at, step.as_slice());
-            } else {
-                speeds[k] += places * DIFFERENCE;
+            match by {
+                By::Position => {
+                    // The straight way leaves the loops by the square of the step only, which is none in the derivative.
+                    let step = tangent.column(k) * (places * DIFFERENCE);
+                    self.mechanism.system().tree().displace(&mut at, step.as_slice());
+                }
+                By::Speed => speeds[k] += places * DIFFERENCE,
             }
             let moving = self.moving(t, &at, &speeds, second)?;
             slope += self.forces(&moving)? * (weight / (12.0 * DIFFERENCE));
@@ -304,28 +314,16 @@ impl<'a> Balance<'a> {
         Ok(slope)
     }
 
-    /// `d u/d z`: the stiffness.
-    pub fn stiffness(
+    /// `d u/d z` or `d u/d z'` (independent x independent) at `(t, q)` and `(z', z'')`.
+    pub fn slopes(
         &mut self,
+        by: By,
         at: (f64, &[f64]),
         motion: (&[f64], &[f64]),
         tangent: &DMatrix<f64>,
     ) -> Result<DMatrix<f64>, AnalysisError> {
         let columns: Result<Vec<_>, _> = (0..motion.0.len())
-            .map(|k| self.slope(at, motion, tangent, (0, k)))
-            .collect();
-        Ok(DMatrix::from_columns(&columns?))
-    }
-
-    /// `d u/d z'`: the damping, gyroscopic terms included.
-    pub fn damping(
-        &mut self,
-        at: (f64, &[f64]),
-        motion: (&[f64], &[f64]),
-        tangent: &DMatrix<f64>,
-    ) -> Result<DMatrix<f64>, AnalysisError> {
-        let columns: Result<Vec<_>, _> = (0..motion.0.len())
-            .map(|k| self.slope(at, motion, tangent, (1, k)))
+            .map(|k| self.slope(by, at, motion, tangent, k))
             .collect();
         Ok(DMatrix::from_columns(&columns?))
     }

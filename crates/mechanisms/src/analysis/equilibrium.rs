@@ -1,6 +1,6 @@
 //! Static equilibrium, and whether it is stable.
 
-use super::balance::{Balance, check, number};
+use super::balance::{Balance, By, check, number};
 use super::error::AnalysisError;
 use crate::mechanism::Mechanism;
 use linkdyn_kinematics::Positions;
@@ -187,7 +187,7 @@ impl Rest<'_> {
     fn stiffness(&mut self, point: &Point) -> Result<DMatrix<f64>, AnalysisError> {
         let still = self.still();
         self.balance
-            .stiffness((self.time, &self.q), (&still, &still), &point.tangent)
+            .slopes(By::Position, (self.time, &self.q), (&still, &still), &point.tangent)
     }
 
     fn mass(&mut self) -> Result<DMatrix<f64>, AnalysisError> {

@@ -1,6 +1,6 @@
 //! Linearisation about a state, in independent coordinates.
 
-use super::balance::{Balance, check, number};
+use super::balance::{Balance, By, check, number};
 use super::error::AnalysisError;
 use super::modes::{Mode, general_modes, undamped_modes};
 use crate::mechanism::{Mechanism, State};
@@ -73,8 +73,8 @@ pub fn linearise(mechanism: &Mechanism, t: f64, state: &State) -> Result<Lineari
     let tangent = balance.moving(t, &state.q, &rates, &second)?.tangent;
     let linearised = Linearised {
         mass: balance.mass(at, motion)?,
-        damping: balance.damping(at, motion, &tangent)?,
-        stiffness: balance.stiffness(at, motion, &tangent)?,
+        damping: balance.slopes(By::Speed, at, motion, &tangent)?,
+        stiffness: balance.slopes(By::Position, at, motion, &tangent)?,
         independent: balance.independent_names(),
         rates: work.rates().to_vec(),
         tangent,
