@@ -10,7 +10,7 @@ const ABOVE_ROUNDING: f64 = 1e5;
 
 /// A difference quotient is not a number.
 #[derive(Debug, thiserror::Error)]
-#[error("df/dy is not finite")]
+#[error("a difference quotient of f is not finite")]
 pub(crate) struct NotFinite;
 
 /// Writes the first `columns` columns of df/dy at (t, y) by forward differences; the others are left as they are.
@@ -224,6 +224,9 @@ mod tests {
             Ok(())
         };
         let error = matrix(jump, 0.1, &[1.0], &[1e-8], 1).unwrap_err();
-        assert!(error.to_string().contains("df/dy is not finite"), "{error}");
+        assert!(
+            error.to_string().contains("a difference quotient of f is not finite"),
+            "{error}"
+        );
     }
 }

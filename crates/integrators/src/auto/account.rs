@@ -1,4 +1,4 @@
-//! What the methods have cost, and which of them shall go on.
+//! What the methods have cost, and which of them shall go on. For the origin of the numbers see the method's own file.
 
 /// Part of its own cost rate below which the other method must be expected to stay to be worth a trial.
 const WORTH: f64 = 0.8;

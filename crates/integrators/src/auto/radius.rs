@@ -2,7 +2,8 @@
 
 use crate::reduced::Layout;
 
-/// Iterations, of which the second half is averaged.
+/// Iterations, of which the second half is averaged: an even number, and enough for some ten percent where two moduli are apart by a half
+/// (1.5⁻⁸ is 4 %). A matrix costs as many evaluations as it has columns, far more than these products.
 const ITERATIONS: usize = 16;
 
 /// Finds spectral radii by power iteration.

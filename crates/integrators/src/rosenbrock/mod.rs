@@ -12,11 +12,11 @@ use tableau::{A, C, D, GAMMA, H, STAGES, TIMES};
 /// zero where df/dy is), and rounding of f enters as ε/PART, far below the error of a step.
 const PART: f64 = 2e-5;
 
-/// Safety of the step, and weight of the step before (Hairer, Wanner II, IV.7 and IV.8).
+/// Safety of the step (Hairer, Wanner II, IV.7), and weight of the error before, that of DOPRI5 (Hairer, Wanner II, IV.2).
 const SAFETY: f64 = 0.9;
 const MEMORY: f64 = 0.04;
 
-/// By how much a step is shortened whose matrix is singular.
+/// By how much a step is shortened whose matrix is singular, as with Radau5.
 const SHORTEN: f64 = 0.5;
 
 /// RODAS5P, the stiffly accurate Rosenbrock method of order 5 with 8 stages and an embedded result of order 4.
