@@ -185,7 +185,7 @@ pub struct StabilityArgs {
 /// Options of `linkdyn analyse`.
 #[derive(Debug, Args)]
 pub struct AnalyseArgs {
-    /// Name of a built-in scene (see `linkdyn scenes`)
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
     /// What to find out
     #[arg(value_enum)]

@@ -22,10 +22,12 @@ fn a_new_file_is_checked_run_and_never_overwritten() {
 
     let checked = linkdyn(&["check", &file]);
     assert!(
-        said(&checked).contains("degrees of freedom at start 1"),
+        said(&checked).contains("cut: coupler - C (spherical) - rocker") && said(&checked).contains("C.fz"),
         "{}",
         said(&checked)
     );
+    let analysed = linkdyn(&["analyse", &file, "equilibrium"]);
+    assert!(said(&analysed).contains("stable"), "{}", said(&analysed));
     let run = linkdyn(&["run", &file, "--until", "0.1", "--out", &out.display().to_string()]);
     assert_eq!(run.status.code(), Some(0), "{}", said(&run));
     assert!(out.join("states.csv").is_file() && out.join("run.json").is_file());

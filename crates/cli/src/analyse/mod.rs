@@ -37,7 +37,8 @@ pub fn analyse(args: &AnalyseArgs) -> Result<(), CliError> {
     output::print(&all.join("\n"))
 }
 
-fn mobility_tables(prepared: &Prepared) -> Result<Vec<Table>, AnalysisError> {
+/// What can move, and the redundant equations by name.
+pub(crate) fn mobility_tables(prepared: &Prepared) -> Result<Vec<Table>, AnalysisError> {
     let found = mobility(&prepared.mechanism, &prepared.start.q)?;
     let mut counts = Table::list("mobility");
     let counted = i64::try_from(found.counted).unwrap_or(i64::MAX);

@@ -69,23 +69,26 @@ impl Plan {
         if !fixed && !ADAPTIVE.contains(&method) {
             return Err(CliError::unknown("method", method, ADAPTIVE.into_iter().chain(FIXED)));
         }
-        let misplaced = |option: &str, hint: &str| {
+        let misplaced = |option: &str, hint: String| {
             Err(CliError::usage(format!("`{option}` does not go with method `{method}`")).with_hint(hint))
         };
         if fixed && (args.rtol.is_some() || args.atol.is_some()) {
             return misplaced(
                 "--rtol/--atol",
-                "give its `--step`, or take an adaptive method: auto, adams, dop853, dopri5, radau5, bdf, rodas",
+                format!("give its `--step`, or take an adaptive method: {}", ADAPTIVE.join(", ")),
             );
         }
         if !fixed && args.step.is_some() {
             return misplaced(
                 "--step",
-                "give `--rtol` and `--atol`, or take a method of fixed step: rk4, newmark",
+                format!(
+                    "give `--rtol` and `--atol`, or take a method of fixed step: {}",
+                    FIXED.join(", ")
+                ),
             );
         }
         if method != "newmark" && args.iterations.is_some() {
-            return misplaced("--iterations", "only newmark has a corrector to iterate");
+            return misplaced("--iterations", "only newmark has a corrector to iterate".to_owned());
         }
         let clearance = args
             .variant
