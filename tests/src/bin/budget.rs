@@ -4,9 +4,8 @@
 
 use linkdyn_integrators::{Adams, Integration, Method, Ode, Radau5};
 use linkdyn_mechanisms::Simulation;
-use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsup};
 use linkdyn_tests::budget::{Budget, Row};
-use linkdyn_tests::scenes::{Ready, ready_rsrrr, ready_rsup};
+use linkdyn_tests::scenes::{Ready, builtin};
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
@@ -38,34 +37,17 @@ struct Case {
 }
 
 fn cases() -> Vec<Case> {
-    let case = |name, ready, method, tolerance| Case {
-        name,
-        ready,
-        method,
-        tolerance,
+    let case = |(name, ready): (&'static str, Ready)| {
+        let stiff = name.contains("clearance") || name.contains("flexible");
+        let (method, tolerance) = if stiff { ("radau5", 1e-9) } else { ("adams", 1e-12) };
+        Case {
+            name,
+            ready,
+            method,
+            tolerance,
+        }
     };
-    let variant = |clearance, flexible| {
-        ready_rsup(&Rsup {
-            clearance,
-            flexible,
-            ..Rsup::default()
-        })
-    };
-    let (planar, spatial) = (Some(ClearanceKind::Planar), Some(ClearanceKind::Spatial));
-    vec![
-        case("rsrrr", ready_rsrrr(false, 1.0), "adams", 1e-12),
-        case("rsrrr --friction", ready_rsrrr(true, 1.0), "adams", 1e-12),
-        case("rsup", variant(None, None), "adams", 1e-12),
-        case("rsup --clearance planar", variant(planar, None), "radau5", 1e-9),
-        case("rsup --clearance spatial", variant(spatial, None), "radau5", 1e-9),
-        case("rsup --flexible 4", variant(None, Some(4)), "radau5", 1e-9),
-        case(
-            "rsup --flexible 4 --clearance planar",
-            variant(planar, Some(4)),
-            "radau5",
-            1e-9,
-        ),
-    ]
+    builtin().into_iter().map(case).collect()
 }
 
 impl Case {
