@@ -5,24 +5,12 @@ use linkdyn_kinematics::{Joint, Pose};
 use linkdyn_mechanisms::analysis::branches::Search;
 use linkdyn_mechanisms::analysis::{AnalysisError, branches};
 use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Start};
-use linkdyn_tests::linkages::{FourBar, Rssr};
+use linkdyn_tests::linkages::{FourBar, Rssr, start};
+use linkdyn_tests::numbers::apart;
 use linkdyn_tests::strategies;
 use nalgebra::{Unit, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-
-fn holding(name: &str, value: f64) -> Start {
-    Start {
-        positions: vec![(name.into(), value)],
-        held: vec![name.into()],
-        speeds: Vec::new(),
-    }
-}
-
-fn apart(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(2.0 * PI);
-    turn.min(2.0 * PI - turn)
-}
 
 proptest! {
     #![proptest_config(strategies::cases(20))]
@@ -33,7 +21,7 @@ proptest! {
         let closing = if spherical { Joint::Spherical } else { Joint::revolute_z() };
         let mechanism = FourBar { lengths: [a, b, c, d], plane, closing }.linkage().build().expect("valid");
         let search = Search { guesses: 40, ..Search::default() };
-        let found = branches(&mechanism, &holding("crank", crank), &search).expect("isolated");
+        let found = branches(&mechanism, &start(&[("crank", crank)], &["crank"]), &search).expect("isolated");
         prop_assert_eq!(found.positions.len(), 2);
         prop_assert!(found.singles == 0 && found.lost < 10, "{found:?}");
         for one in &found.positions {
@@ -49,15 +37,11 @@ proptest! {
 
 #[test]
 fn an_rssr_has_two_rocker_angles_with_the_rod_on_either_side_of_its_universal_joint() {
-    let rssr = Rssr {
-        crank: 0.1,
-        rocker: 0.25,
-        base: [0.3, 0.1, 0.2],
-        rod: 0.45,
-    };
+    let rssr = Rssr::FULL_TURN;
     let mechanism = rssr.build();
     for theta in [0.0, 1.0, 2.0, 4.0] {
-        let found = branches(&mechanism, &holding("theta", theta), &Search::default()).expect("isolated");
+        let found =
+            branches(&mechanism, &start(&[("theta", theta)], &["theta"]), &Search::default()).expect("isolated");
         assert_eq!(found.positions.len(), 4);
         for phi in rssr.rocker_angles(theta).expect("a full turn") {
             let here: Vec<_> = found
@@ -82,17 +66,12 @@ fn an_rssr_has_two_rocker_angles_with_the_rod_on_either_side_of_its_universal_jo
 
 #[test]
 fn a_locked_angle_has_none() {
-    let rssr = Rssr {
-        crank: 0.1,
-        rocker: 0.25,
-        base: [0.4, 0.1, 0.2],
-        rod: 0.5,
-    };
+    let rssr = Rssr::LOCKING;
     let search = Search {
         guesses: 50,
         ..Search::default()
     };
-    let found = branches(&rssr.build(), &holding("theta", PI), &search).expect("no error");
+    let found = branches(&rssr.build(), &start(&[("theta", PI)], &["theta"]), &search).expect("no error");
     assert!(found.positions.is_empty() && found.lost == 50);
 }
 
@@ -115,7 +94,12 @@ fn slider_crank() -> Mechanism {
 
 #[test]
 fn slides_are_searched_as_far_as_the_lengths_reach() {
-    let found = branches(&slider_crank(), &holding("crank", 0.7), &Search::default()).expect("isolated");
+    let found = branches(
+        &slider_crank(),
+        &start(&[("crank", 0.7)], &["crank"]),
+        &Search::default(),
+    )
+    .expect("isolated");
     let mut places: Vec<f64> = found.positions.iter().map(|one| one.q[2]).collect();
     places.sort_by(f64::total_cmp);
     let (along, up) = (0.3 * 0.7_f64.cos(), 0.3 * 0.7_f64.sin());
@@ -162,7 +146,7 @@ fn equal_seeds_give_equal_searches_and_too_little_held_is_refused() {
     let search = |seed| {
         branches(
             &mechanism,
-            &holding("crank", 0.7),
+            &start(&[("crank", 0.7)], &["crank"]),
             &Search {
                 seed,
                 ..Search::default()
@@ -181,7 +165,7 @@ fn equal_seeds_give_equal_searches_and_too_little_held_is_refused() {
     }
     let none = branches(
         &mechanism,
-        &holding("crank", 0.7),
+        &start(&[("crank", 0.7)], &["crank"]),
         &Search {
             guesses: 0,
             ..Search::default()

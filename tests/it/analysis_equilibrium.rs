@@ -5,9 +5,8 @@ use linkdyn_mechanisms::analysis::equilibrium::{Seek, Settings, Stability};
 use linkdyn_mechanisms::analysis::positions::Sweep;
 use linkdyn_mechanisms::analysis::{AnalysisError, equilibrium, positions};
 use linkdyn_mechanisms::catalogue::{Rsup, rsup};
-use linkdyn_mechanisms::rfem::{Division, Material, Section, divide};
-use linkdyn_mechanisms::{Along, Drive, Linkage, Mechanism, Mount, Spring, Start};
-use linkdyn_tests::linkages::{FourBar, bricard, hanging};
+use linkdyn_mechanisms::{Drive, Linkage, Mechanism, Mount, Spring, Start};
+use linkdyn_tests::linkages::{Cantilever, FourBar, bricard, cantilever, hanging};
 use std::f64::consts::PI;
 
 const NEAREST: Settings = Settings {
@@ -173,20 +172,9 @@ fn bricards_loop_sinks_to_the_least_of_its_energy_in_spite_of_its_redundant_row(
     );
 }
 
-/// A steel bar of 1 m and 10 x 10 mm, clamped at its beginning, and the sag of its end.
+/// The sag of the end of a clamped bar.
 fn sag(n: usize, gravity: f64) -> f64 {
-    let material = Material::isotropic(7850.0, 2.1e11, 0.3, 0.0).expect("a material");
-    let section = Section::rectangle(0.01, 0.01).expect("a section");
-    let beam = divide(1.0, &section, &material, Division::Standard(n)).expect("a beam");
-    let mut linkage = Linkage::new([0.0, 0.0, -gravity]);
-    let link = linkage.flexible_link("b", &beam, Along::X);
-    linkage.joint(
-        "clamp",
-        Joint::Fixed,
-        Mount::at_origin(Linkage::GROUND),
-        Mount::at_origin(link.elements[0]),
-    );
-    let mechanism = linkage.build().expect("valid");
+    let Cantilever { mechanism, link, .. } = cantilever(n, gravity, 0.0);
     let q = vec![0.0; mechanism.system().tree().coordinates()];
     let found = equilibrium(&mechanism, &q, &Settings::default()).expect("sags");
     let nearest = equilibrium(&mechanism, &q, &NEAREST).expect("sags");

@@ -6,9 +6,8 @@ use linkdyn_mechanisms::analysis::equilibrium::Settings;
 use linkdyn_mechanisms::analysis::{AnalysisError, equilibrium, linearise};
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
 use linkdyn_mechanisms::rfem::modes::{Axis, Ends, bending_frequency};
-use linkdyn_mechanisms::rfem::{Division, Material, Section, divide};
-use linkdyn_mechanisms::{Along, Linkage, Mechanism, Mount, Simulation, Spring, Start, State};
-use linkdyn_tests::linkages::{FourBar, Rssr, hanging};
+use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Simulation, Spring, Start, State};
+use linkdyn_tests::linkages::{Cantilever, FourBar, Rssr, cantilever, hanging};
 use linkdyn_tests::numbers::{derivative, difference};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -81,26 +80,16 @@ fn a_double_pendulum() {
     assert!(real.len() == 4 && real.iter().sum::<f64>().abs() < 1e-9, "{modes:?}");
 }
 
-fn cantilever(n: usize, gravity: f64, relaxation_time: f64) -> (Mechanism, Section, Material) {
-    let material = Material::isotropic(7850.0, 2.1e11, 0.3, relaxation_time).expect("a material");
-    let section = Section::rectangle(0.01, 0.01).expect("a section");
-    let beam = divide(1.0, &section, &material, Division::Standard(n)).expect("a beam");
-    let mut linkage = Linkage::new([0.0, 0.0, -gravity]);
-    let link = linkage.flexible_link("b", &beam, Along::X);
-    linkage.joint(
-        "clamp",
-        Joint::Fixed,
-        Mount::at_origin(Linkage::GROUND),
-        Mount::at_origin(link.elements[0]),
-    );
-    (linkage.build().expect("valid"), section, material)
-}
-
 #[test]
 fn a_cantilever_of_elements_approaches_the_beam_as_published() {
     // Relative errors of the first mode for 2, 4, 8 elements; the bar's two planes are alike.
     for (n, published) in [(2, 6.08e-2), (4, 1.45e-2), (8, 3.60e-3)] {
-        let (mechanism, section, material) = cantilever(n, 0.0, 0.0);
+        let Cantilever {
+            mechanism,
+            section,
+            material,
+            ..
+        } = cantilever(n, 0.0, 0.0);
         let state = at_rest(&vec![0.0; 3 * n], 3 * n);
         let modes = linearise(&mechanism, 0.0, &state)
             .expect("at rest")
@@ -128,7 +117,7 @@ fn a_cantilever_of_elements_approaches_the_beam_as_published() {
 #[test]
 fn damping_of_the_material_grows_with_the_frequency() {
     let relaxation_time = 1e-4;
-    let (mechanism, _, _) = cantilever(3, 0.0, relaxation_time);
+    let mechanism = cantilever(3, 0.0, relaxation_time).mechanism;
     let modes = linearise(&mechanism, 0.0, &at_rest(&[0.0; 9], 9))
         .expect("at rest")
         .modes()
@@ -145,8 +134,8 @@ fn damping_of_the_material_grows_with_the_frequency() {
 
 #[test]
 fn a_sagged_cantilever_vibrates_like_a_straight_one() {
-    let (straight, _, _) = cantilever(4, 0.0, 0.0);
-    let (heavy, _, _) = cantilever(4, 9.81, 0.0);
+    let straight = cantilever(4, 0.0, 0.0).mechanism;
+    let heavy = cantilever(4, 9.81, 0.0).mechanism;
     let sagged = equilibrium(&heavy, &[0.0; 12], &Settings::default()).expect("sags");
     let frequencies = |mechanism: &Mechanism, q: &[f64]| -> Vec<f64> {
         let modes = linearise(mechanism, 0.0, &at_rest(q, 12))
@@ -191,12 +180,7 @@ fn the_stiffness_holds_multipliers_times_second_derivatives() {
         plane: Pose::turn(Vector3::y_axis(), 0.4),
         closing,
     };
-    let rssr = Rssr {
-        crank: 0.1,
-        rocker: 0.25,
-        base: [0.3, 0.1, 0.2],
-        rod: 0.45,
-    };
+    let rssr = Rssr::FULL_TURN;
     let phi = rssr.rocker_angles(0.5).expect("closes")[0];
     let [psi, tilt] = rssr.rod_angles(0.5, phi);
     let cases = [

@@ -3,8 +3,8 @@
 use linkdyn_kinematics::{Joint, Pose};
 use linkdyn_mechanisms::analysis::{AnalysisError, mobility};
 use linkdyn_mechanisms::catalogue::{Rsrrr, Rsup, rsrrr, rsup};
-use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Start};
-use linkdyn_tests::linkages::{FourBar, bennett, bricard, cardan};
+use linkdyn_mechanisms::{Linkage, Mechanism, Mount};
+use linkdyn_tests::linkages::{FourBar, bennett, bricard, cardan, closed};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -21,18 +21,6 @@ fn counts(mechanism: &Mechanism, q: &[f64]) -> (isize, usize, usize, usize) {
     );
     assert!(found.redundant.iter().all(|row| row.measure < 1e-12));
     (found.counted, found.freedoms, found.finite, found.general)
-}
-
-fn closed(mechanism: &Mechanism, positions: &[(&str, f64)], held: &[&str]) -> Vec<f64> {
-    let start = Start {
-        positions: positions
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
-        held: held.iter().map(|name| (*name).to_owned()).collect(),
-        speeds: Vec::new(),
-    };
-    mechanism.assemble(&start).expect("closes").0.q
 }
 
 #[test]

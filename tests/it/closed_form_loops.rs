@@ -3,7 +3,8 @@
 use linkdyn_kinematics::Joint;
 use linkdyn_kinematics::assembly::{Assembly, AssemblyError, Branch, Settings, assemble};
 use linkdyn_mechanisms::{Mechanism, Start, StartError, State};
-use linkdyn_tests::linkages::{FourBar, Rssr, bennett, cardan};
+use linkdyn_tests::linkages::{self, FourBar, Rssr, bennett, cardan};
+use linkdyn_tests::numbers::apart;
 use linkdyn_tests::strategies;
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -12,28 +13,10 @@ use std::f64::consts::PI;
 const ANGLE: f64 = 1e-12;
 
 fn start(mechanism: &Mechanism, positions: &[(&str, f64)], held: &[&str]) -> Result<(State, Assembly), StartError> {
-    mechanism.assemble(&Start {
-        positions: positions
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
-        held: held.iter().map(|name| (*name).to_owned()).collect(),
-        speeds: Vec::new(),
-    })
+    mechanism.assemble(&linkages::start(positions, held))
 }
 
-/// Distance of two angles.
-fn apart(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(2.0 * PI);
-    turn.min(2.0 * PI - turn)
-}
-
-const FULL_TURN: Rssr = Rssr {
-    crank: 0.1,
-    rocker: 0.25,
-    base: [0.3, 0.1, 0.2],
-    rod: 0.45,
-};
+const FULL_TURN: Rssr = Rssr::FULL_TURN;
 
 #[test]
 fn rssr_angles_are_those_published() {
@@ -86,11 +69,7 @@ fn rssr_closes_on_both_branches_all_the_way_round() {
     }
 }
 
-const LOCKING: Rssr = Rssr {
-    base: [0.4, 0.1, 0.2],
-    rod: 0.5,
-    ..FULL_TURN
-};
+const LOCKING: Rssr = Rssr::LOCKING;
 
 #[test]
 fn rssr_cannot_be_assembled_between_its_locking_angles() {

@@ -4,6 +4,7 @@ use linkdyn_integrators::Adams;
 use linkdyn_kinematics::assembly::AssemblyError;
 use linkdyn_mechanisms::analysis::mobility;
 use linkdyn_mechanisms::{StartError, file};
+use linkdyn_tests::numbers::apart;
 use linkdyn_tests::scenes::{Ready, prepare, simulate};
 use std::f64::consts::PI;
 
@@ -20,12 +21,6 @@ fn ready(text: &str) -> Ready {
 fn index(ready: &Ready, name: &str) -> usize {
     let at = ready.mechanism.coordinate_names().position(|there| there == name);
     at.expect("there is such a coordinate")
-}
-
-/// Distance of two angles.
-fn apart(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(2.0 * PI);
-    turn.min(2.0 * PI - turn)
 }
 
 #[test]

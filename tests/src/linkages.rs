@@ -3,7 +3,8 @@
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_kinematics::dh::{Convention, Row};
 use linkdyn_kinematics::{Joint, Pose};
-use linkdyn_mechanisms::{Linkage, Mechanism, Mount};
+use linkdyn_mechanisms::rfem::{Division, Material, Section, divide};
+use linkdyn_mechanisms::{Along, FlexibleLink, Linkage, Mechanism, Mount, Start};
 use nalgebra::{Matrix3, Unit, Vector3};
 
 fn rod(length: f64) -> RigidInertia {
@@ -24,6 +25,21 @@ pub struct Rssr {
 }
 
 impl Rssr {
+    /// Whose crank turns all the way (benchmark 22-closed-form-loops).
+    pub const FULL_TURN: Self = Self {
+        crank: 0.1,
+        rocker: 0.25,
+        base: [0.3, 0.1, 0.2],
+        rod: 0.45,
+    };
+
+    /// Whose crank locks near half a turn (benchmark 22-closed-form-loops).
+    pub const LOCKING: Self = Self {
+        base: [0.4, 0.1, 0.2],
+        rod: 0.5,
+        ..Self::FULL_TURN
+    };
+
     /// The linkage with coordinates `theta` (crank), `rod.psi`, `rod.theta` and `phi` (rocker). The rod hangs on the crank by
     /// a universal joint: its idle spin is taken out.
     pub fn build(&self) -> Mechanism {
@@ -245,4 +261,61 @@ pub fn hanging(links: &[(f64, f64)]) -> Linkage {
         last = Mount::at(link, [0.0, -length, 0.0]);
     }
     linkage
+}
+
+/// A start from guessed positions, of which some are held.
+pub fn start(positions: &[(&str, f64)], held: &[&str]) -> Start {
+    Start {
+        positions: positions
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
+        held: held.iter().map(|name| (*name).to_owned()).collect(),
+        speeds: Vec::new(),
+    }
+}
+
+/// The coordinates of a mechanism closed from there.
+///
+/// # Panics
+/// If it does not close.
+pub fn closed(mechanism: &Mechanism, positions: &[(&str, f64)], held: &[&str]) -> Vec<f64> {
+    mechanism.assemble(&start(positions, held)).expect("closes").0.q
+}
+
+/// A steel bar of 1 m and 10 x 10 mm along x in `n` elements, clamped at its beginning, under gravity \[m/s^2\] along -z.
+pub struct Cantilever {
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// The bar's elements.
+    pub link: FlexibleLink,
+    /// Its section.
+    pub section: Section,
+    /// Its material.
+    pub material: Material,
+}
+
+/// See [`Cantilever`]; the material's damping is given as a relaxation time \[s\].
+///
+/// # Panics
+/// Not with a positive number of elements.
+pub fn cantilever(n: usize, gravity: f64, relaxation_time: f64) -> Cantilever {
+    let material = Material::isotropic(7850.0, 2.1e11, 0.3, relaxation_time).expect("a material");
+    let section = Section::rectangle(0.01, 0.01).expect("a section");
+    let beam = divide(1.0, &section, &material, Division::Standard(n)).expect("a beam");
+    let mut linkage = Linkage::new([0.0, 0.0, -gravity]);
+    let link = linkage.flexible_link("b", &beam, Along::X);
+    linkage.joint(
+        "clamp",
+        Joint::Fixed,
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(link.elements[0]),
+    );
+    let mechanism = linkage.build().expect("valid");
+    Cantilever {
+        mechanism,
+        link,
+        section,
+        material,
+    }
 }

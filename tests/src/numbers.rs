@@ -2,6 +2,7 @@
 
 use linkdyn_dynamics::lagrange::LagrangeEquations;
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
 
 /// Largest magnitude; NaN where there is one.
 pub fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
@@ -66,6 +67,12 @@ impl Condition {
     pub fn product(&self) -> f64 {
         self.mass * self.closure * self.closure
     }
+}
+
+/// Distance of two angles \[rad\], at most half a turn.
+pub fn apart(a: f64, b: f64) -> f64 {
+    let turn = (a - b).rem_euclid(2.0 * PI);
+    turn.min(2.0 * PI - turn)
 }
 
 /// The matrix of the magnitudes.
