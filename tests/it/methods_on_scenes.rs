@@ -3,7 +3,7 @@
 
 use linkdyn_integrators::{EvalError, Integration, Method, Ode, Progress, Statistics};
 use linkdyn_mechanisms::{Observation, Simulation};
-use linkdyn_tests::methods::adaptive;
+use linkdyn_tests::methods::{adaptive, nth};
 use linkdyn_tests::scenes::{Ready, builtin, distance, simulate};
 
 /// For each scene how far to run and the loosest of three tolerances. The runs with clearance make and lose contacts; their
@@ -55,8 +55,7 @@ fn errors_follow_tolerances() {
             let (name, _) = adaptive::<Simulation>().swap_remove(k);
             let tolerances = [1.0, 1e-2, 1e-4].map(|part| part * loosest);
             let error = |tolerance| {
-                let (_, method) = adaptive().swap_remove(k);
-                let found = end(&ready, method, tolerance, until);
+                let found = end(&ready, nth(k), tolerance, until);
                 let [one, two] = [&explicit, &implicit].map(|exact| distance(&found, exact));
                 larger(one, two)
             };
@@ -82,8 +81,7 @@ fn output_changes_nothing() {
         for k in 0..adaptive::<Simulation>().len() {
             let (name, _) = adaptive::<Simulation>().swap_remove(k);
             let ends = [1.0, 7.0, 500.0, 3.7].map(|parts| {
-                let (_, method) = adaptive().swap_remove(k);
-                let last = rows(&ready, method, tolerance, until, until / parts)
+                let last = rows(&ready, nth(k), tolerance, until, until / parts)
                     .pop()
                     .expect("rows");
                 assert_eq!(last.t, until);

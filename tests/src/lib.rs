@@ -5,6 +5,7 @@ mod blueprint;
 pub mod budget;
 pub mod linkages;
 pub mod loads;
+#[path = "../../crates/integrators/tests/it/methods.rs"]
 pub mod methods;
 pub mod numbers;
 pub mod reference;

@@ -10,6 +10,7 @@ mod convergence;
 mod counters;
 mod events;
 mod failures;
+mod methods;
 mod output;
 mod problems;
 mod radau;

@@ -1,10 +1,10 @@
 //! Output must not change the run.
 
 use linkdyn_integrators::{
-    Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Integration, IntegrationError, Method, Newmark, Ode, Progress,
-    Radau5, Rk4, Rodas, Settings,
+    Adams, Corrector, Dop853, Integration, IntegrationError, Method, Newmark, Ode, Progress, Rk4, Settings,
 };
 
+use crate::methods::{adaptive, nth};
 use crate::problems::{Counting, Damped, Kink, Pleiades, boxed, distance, finish};
 
 /// All steps of a run there and back again, with stops; `outputs` places of output in each step.
@@ -41,20 +41,11 @@ fn the_path_is_the_same_to_the_last_bit() {
     }
     check(|| Kink, || Rk4::new(0.01), &Kink::START);
     check(|| Kink, || Newmark::new(0.01, Corrector::Times(3)), &Kink::START);
-    check(|| Kink, DormandPrince5::default, &Kink::START);
-    check(|| Kink, Dop853::default, &Kink::START);
-    check(|| Kink, Adams::default, &Kink::START);
-    check(|| Kink, Radau5::default, &Kink::START);
-    check(|| Kink, Bdf::default, &Kink::START);
-    check(|| Kink, Auto::default, &Kink::START);
-    check(|| Kink, Rodas::default, &Kink::START);
-    // With refused steps.
-    check(|| Pleiades, Dop853::default, &Pleiades::START);
-    check(|| Pleiades, Adams::default, &Pleiades::START);
-    check(|| Pleiades, Radau5::default, &Pleiades::START);
-    check(|| Pleiades, Bdf::default, &Pleiades::START);
-    check(|| Pleiades, Auto::default, &Pleiades::START);
-    check(|| Pleiades, Rodas::default, &Pleiades::START);
+    for k in 0..adaptive::<Kink>().len() {
+        check(|| Kink, || nth(k), &Kink::START);
+        // With refused steps.
+        check(|| Pleiades, || nth(k), &Pleiades::START);
+    }
 }
 
 #[test]
@@ -80,13 +71,9 @@ fn interpolation_is_continuous_from_step_to_step() {
             assert!(gap < 1e-8, "{gap:e} at {from}, step {:e}", to - from);
         }
     }
-    check(DormandPrince5::default());
-    check(Dop853::default());
-    check(Adams::default());
-    check(Radau5::default());
-    check(Bdf::default());
-    check(Auto::default());
-    check(Rodas::default());
+    for (_, method) in adaptive() {
+        check(method);
+    }
 }
 
 #[test]

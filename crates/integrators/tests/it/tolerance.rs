@@ -1,9 +1,8 @@
 //! What a tolerance buys.
 
-use linkdyn_integrators::{
-    Adams, Auto, Bdf, Dop853, DormandPrince5, Integration, Method, Ode, Radau5, Rodas, Settings,
-};
+use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Integration, Method, Ode, Settings};
 
+use crate::methods::{adaptive, nth};
 use crate::problems::{Damped, Function, Kink, Pleiades, boxed, distance, finish, solve};
 
 /// Two digits more of tolerance must buy at least one digit of accuracy, down to rounding.
@@ -27,23 +26,12 @@ fn responds<P: Ode, M: Method<P>>(
     }
 }
 
-fn all_respond<M>(method: impl Fn() -> M)
-where
-    M: Method<Damped> + Method<Kink>,
-{
-    responds(|| Damped, &method, &Damped::START, (20.0, &Damped::exact(20.0)), 1.0);
-    responds(|| Kink, &method, &Kink::START, (1.5, &Kink::exact(1.5)), 10.0);
-}
-
 #[test]
 fn error_follows_tolerance() {
-    all_respond(DormandPrince5::default);
-    all_respond(Dop853::default);
-    all_respond(Adams::default);
-    all_respond(Radau5::default);
-    all_respond(Bdf::default);
-    all_respond(Auto::default);
-    all_respond(Rodas::default);
+    for k in 0..adaptive::<Damped>().len() {
+        responds(|| Damped, || nth(k), &Damped::START, (20.0, &Damped::exact(20.0)), 1.0);
+        responds(|| Kink, || nth(k), &Kink::START, (1.5, &Kink::exact(1.5)), 10.0);
+    }
 }
 
 #[test]
@@ -124,11 +112,7 @@ fn backward_and_back() {
         run.interpolate(0.5 * (from + to), &mut y).expect("inside");
         assert!(distance(&y, &Damped::exact(0.5 * (from + to))) < 1e-9);
     }
-    there_and_back(DormandPrince5::default());
-    there_and_back(Dop853::default());
-    there_and_back(Adams::default());
-    there_and_back(Radau5::default());
-    there_and_back(Bdf::default());
-    there_and_back(Auto::default());
-    there_and_back(Rodas::default());
+    for (_, method) in adaptive() {
+        there_and_back(method);
+    }
 }

@@ -1,4 +1,4 @@
-//! The methods with error control.
+//! The methods with error control: a new one is one line more here, for tests of this crate and of mechanisms.
 
 use linkdyn_integrators::{Adams, Auto, Bdf, Dop853, DormandPrince5, Method, Ode, Radau5, Rodas};
 
@@ -13,4 +13,9 @@ pub fn adaptive<P: Ode + 'static>() -> Vec<(&'static str, Box<dyn Method<P>>)> {
         ("bdf", Box::new(Bdf::default())),
         ("rodas", Box::new(Rodas::default())),
     ]
+}
+
+/// The k-th of them, made anew.
+pub fn nth<P: Ode + 'static>(k: usize) -> Box<dyn Method<P>> {
+    adaptive().swap_remove(k).1
 }
