@@ -1,10 +1,12 @@
 //! A body with an arm, on the ground by each kind of joint, moves as the same body that is free but for the joint's cut form.
 
-use linkdyn_kinematics::{Joint, Pose, Positions};
+use linkdyn_kinematics::{Attachment, Closure, Custom, Joint, JointStep, LinkId, Pose, Positions, Row, Tree};
 use linkdyn_mechanisms::dynamics::RigidInertia;
 use linkdyn_mechanisms::integrators::{Dop853, Integration, Settings};
 use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Simulation, Start, run};
-use nalgebra::{Matrix3, Unit, Vector3};
+use linkdyn_tests::strategies;
+use nalgebra::{DMatrix, Matrix3, Unit, UnitQuaternion, Vector3};
+use proptest::prelude::*;
 use std::ops::ControlFlow;
 
 /// Pose of the arm after one second.
@@ -39,15 +41,24 @@ fn own_inertia() -> RigidInertia {
     }
 }
 
-#[test]
-fn every_joint_moves_as_its_cut_form() {
+/// One joint of each kind.
+fn kinds() -> Vec<Joint> {
     let axis = Unit::new_normalize(Vector3::new(0.3, -0.4, 0.8));
     let across = Unit::new_normalize(axis.cross(&Vector3::x()));
     let skew = Unit::new_normalize(Vector3::new(0.9, 0.2, -0.3));
-    let kinds = [
+    let freedoms = [JointStep::Slide { axis: across }, JointStep::Turn { axis }];
+    let third = axis.cross(&across);
+    let along = [*axis, third].map(|axis| Row::Along { axis });
+    let angles = [*across, third].map(|on_predecessor| Row::Angle {
+        on_predecessor,
+        on_successor: *axis,
+        cosine: 0.0,
+    });
+    vec![
         Joint::Fixed,
         Joint::Revolute { axis },
         Joint::Prismatic { axis },
+        Joint::Screw { axis, pitch: -0.04 },
         Joint::Cylindrical { axis },
         Joint::Universal {
             first: axis,
@@ -60,8 +71,16 @@ fn every_joint_moves_as_its_cut_form() {
             normal: axis,
         },
         Joint::Free,
-    ];
-    for kind in kinds {
+        Joint::Custom(Custom::new(&freedoms, &[along, angles].concat())),
+    ]
+}
+
+#[test]
+fn every_joint_moves_as_its_cut_form() {
+    let axis = Unit::new_normalize(Vector3::new(0.3, -0.4, 0.8));
+    let across = Unit::new_normalize(axis.cross(&Vector3::x()));
+    let skew = Unit::new_normalize(Vector3::new(0.9, 0.2, -0.3));
+    for kind in kinds() {
         let mechanism = |cut: bool| {
             let mut m = Linkage::new([2.0, -3.0, 1.0]);
             let body = m.link("body", own_inertia());
@@ -87,4 +106,98 @@ fn every_joint_moves_as_its_cut_form() {
             .max((carried.origin - cut.origin).amax());
         assert!(gap < 1e-9, "{kind:?}: {gap:e}");
     }
+}
+
+proptest! {
+    #![proptest_config(strategies::cases(200))]
+
+    /// What a joint lets happen and what its cut form holds are all there is, and do no work on one another.
+    #[test]
+    fn motions_and_wrenches_of_a_joint_are_orthogonal_and_make_six(
+        joint in strategies::joint(), raw in strategies::raw(), base in strategies::pose(1.0),
+    ) {
+        let mut tree = Tree::new();
+        let body = tree.attach(LinkId::GROUND, base, joint).expect("sound");
+        let q = strategies::coordinates(&joint, &raw);
+        let mut positions = Positions::new(&tree);
+        tree.positions(&q, &mut positions);
+        let motions = tree.frame_jacobian(&positions, body, &Vector3::zeros());
+
+        let mut free = Tree::new();
+        let loose = free.attach(LinkId::GROUND, Pose::identity(), Joint::Free).expect("sound");
+        let on = |link, pose| Attachment { link, pose };
+        let closure = Closure::new(&free, on(LinkId::GROUND, base), on(loose, Pose::identity()), &joint);
+        let pose = positions.pose(body);
+        let turn = UnitQuaternion::from_matrix(&pose.rotation);
+        let mut place = pose.origin.as_slice().to_vec();
+        place.extend([turn.w, turn.i, turn.j, turn.k]);
+        let mut positions = Positions::new(&free);
+        free.positions(&place, &mut positions);
+        let mut residual = vec![0.0; closure.equations()];
+        closure.residual(&positions, &mut residual);
+        prop_assert!(residual.iter().all(|phi| phi.abs() < 1e-12), "{residual:?}");
+        let size = closure.equations();
+        let wrenches = (0..size).map(|k| {
+            let unit: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == k))).collect();
+            let (_, on_body) = closure.wrenches(&positions, &unit);
+            on_body.torque.iter().chain(&on_body.force).copied().collect::<Vec<_>>()
+        });
+        let wrenches = DMatrix::from_vec(6, size, wrenches.flatten().collect());
+        let power = motions.tr_mul(&wrenches);
+        prop_assert!(power.iter().all(|power| power.abs() < 1e-12), "{power}");
+        let rank = |m: &DMatrix<f64>| if m.is_empty() { 0 } else { m.rank(1e-9) };
+        prop_assert_eq!(rank(&motions), joint.speeds());
+        prop_assert_eq!(rank(&wrenches), 6 - joint.speeds());
+    }
+}
+
+/// A nut of mass m and moment J on an upright screw of pitch p: `(J + m p^2) theta'' = -m g p`, whether it is carried or cut.
+#[test]
+fn a_nut_on_a_screw_falls_as_the_closed_form_says() {
+    let text = |cut: &str| {
+        format!(
+            r#"
+            format = 1
+            [links.nut]
+            box = {{ density = 8000, size = [0.1, 0.1, 0.05] }}
+            [joints.thread]
+            kind = "screw"
+            lead = 0.2
+            successor = {{ link = "nut" }}
+            {cut}
+            "#
+        )
+    };
+    let free = "cut = true\n[joints.way]\nkind = \"cylindrical\"\nsuccessor = { link = \"nut\" }\ncoordinates = [\"z\", \"thread\"]";
+    let (m, p): (f64, f64) = (8000.0 * 0.1 * 0.1 * 0.05, 0.2 / std::f64::consts::TAU);
+    let moment = m * (0.1 * 0.1 + 0.1 * 0.1) / 12.0;
+    let expected = -0.5 * m * 9.81 * p / (moment + m * p * p);
+    for cut in ["", free] {
+        let scene = linkdyn_mechanisms::file::scene("nut", &text(cut)).expect("sound");
+        let ready = linkdyn_tests::scenes::prepare(scene);
+        let last = ready.mechanism.coordinate_names().count() - 1;
+        let run = linkdyn_tests::scenes::simulate(&ready, Dop853::default(), 1e-12, 1.0, 1.0);
+        run.end.expect("runs");
+        let turned = run.rows.last().expect("rows").q[last];
+        // Five turns: whole turns of the cut screw do not count.
+        assert!((turned - expected).abs() < 1e-9 * expected.abs(), "{turned} {expected}");
+    }
+}
+
+#[test]
+fn a_custom_joint_without_equations_cannot_be_cut() {
+    let step = JointStep::Turn {
+        axis: Vector3::x_axis(),
+    };
+    let mut m = Linkage::new([0.0; 3]);
+    let body = m.link("body", own_inertia());
+    let (ground, body) = (Mount::at_origin(Linkage::GROUND), Mount::at_origin(body));
+    m.joint("carrier", Joint::Free, ground, body);
+    m.cut("loop", Joint::Custom(Custom::new(&[step], &[])), ground, body);
+    let error = m.build().expect_err("no equations").to_string();
+    assert!(error.contains("`loop`") && error.contains("no equations"), "{error}");
+    let too_many = Custom::new(&[step; 7], &[]);
+    assert!(Joint::Custom(too_many).validate().is_err());
+    let not_six = Custom::new(&[step; 2], &[Row::Coincident]);
+    assert!(Joint::Custom(not_six).validate().is_err());
 }

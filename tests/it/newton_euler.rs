@@ -39,6 +39,12 @@ fn on_predecessor(closure: &Closure, positions: &Positions, mut multipliers: &[f
                 wrench.force += one.rotation * axis * multipliers[0];
                 1
             }
+            Row::Screw { axis, pitch } => {
+                let force = one.rotation * axis * multipliers[0];
+                wrench.force += force;
+                wrench.torque -= force * *pitch;
+                1
+            }
             Row::Angle {
                 on_predecessor,
                 on_successor,
@@ -177,9 +183,12 @@ proptest! {
             for (node, drive) in steps.zip(&part.drive) {
                 let here = work.positions().nodes()[node];
                 let load = reaction.shifted(&(end - here.origin));
+                let torque = here.axis.dot(&load.torque);
+                let force = here.axis.dot(&load.force);
                 let along = match machine.tree().nodes()[node].freedom {
-                    linkdyn_kinematics::Freedom::Linear => here.axis.dot(&load.force),
-                    _ => here.axis.dot(&load.torque),
+                    linkdyn_kinematics::Freedom::Linear => force,
+                    linkdyn_kinematics::Freedom::Screw { pitch } => torque + pitch * force,
+                    _ => torque,
                 };
                 prop_assert!((along - drive).abs() < 1e-11 * scale, "{along} for {drive}, scale {scale:e}");
             }

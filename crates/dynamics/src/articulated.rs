@@ -130,7 +130,11 @@ impl Articulated {
                         torque: inertia.coupling * here.axis,
                         force: inertia.linear.times(&here.axis),
                     },
-                    _ => Wrench {
+                    Freedom::Screw { pitch } => Wrench {
+                        torque: inertia.angular.times(&here.axis) + inertia.coupling * here.axis * pitch,
+                        force: inertia.coupling.tr_mul(&here.axis) + inertia.linear.times(&here.axis) * pitch,
+                    },
+                    Freedom::Angular | Freedom::None => Wrench {
                         torque: inertia.angular.times(&here.axis),
                         force: inertia.coupling.tr_mul(&here.axis),
                     },
@@ -138,7 +142,8 @@ impl Articulated {
                 let pivot = along(node, here, &u);
                 let floor = match node.freedom {
                     Freedom::Linear => floors.0,
-                    _ => floors.1,
+                    Freedom::Screw { pitch } => floors.1 + floors.0 * pitch * pitch,
+                    Freedom::Angular | Freedom::None => floors.1,
                 };
                 if pivot.is_nan() || pivot <= floor {
                     return Err((node.speed, pivot));
@@ -205,10 +210,7 @@ impl Articulated {
                 if node.parent != 0 {
                     *rate -= pivot.u.power(&twist) * pivot.inverse;
                 }
-                match node.freedom {
-                    Freedom::Linear => twist.linear += here.axis * *rate,
-                    _ => twist.angular += here.axis * *rate,
-                }
+                node.advance(&here.axis, |_| *rate, &mut twist);
             }
             self.twists[i] = twist;
         }

@@ -80,7 +80,11 @@ impl Composite {
                         torque: inertia.moment.cross(&here.axis),
                         force: here.axis * inertia.mass,
                     },
-                    _ => Wrench {
+                    Freedom::Screw { pitch } => Wrench {
+                        torque: inertia.second.times(&here.axis) + inertia.moment.cross(&here.axis) * pitch,
+                        force: here.axis.cross(&inertia.moment) + here.axis * (inertia.mass * pitch),
+                    },
+                    Freedom::Angular | Freedom::None => Wrench {
                         torque: inertia.second.times(&here.axis),
                         force: here.axis.cross(&inertia.moment),
                     },
@@ -88,7 +92,8 @@ impl Composite {
                 self.floor[node.speed] = ROUNDING
                     * match node.freedom {
                         Freedom::Linear => inertia.mass,
-                        _ => inertia.second.trace(),
+                        Freedom::Screw { pitch } => inertia.second.trace() + inertia.mass * pitch * pitch,
+                        Freedom::Angular | Freedom::None => inertia.second.trace(),
                     };
                 let row = &mut self.matrix[node.speed * n..(node.speed + 1) * n];
                 row[node.speed] = along(node, here, &force);
@@ -174,8 +179,5 @@ impl Composite {
 /// The part of a wrench that works on a node's freedom.
 #[inline]
 pub(crate) fn along(node: &Node, here: &NodePosition, wrench: &Wrench) -> f64 {
-    match node.freedom {
-        Freedom::Linear => here.axis.dot(&wrench.force),
-        _ => here.axis.dot(&wrench.torque),
-    }
+    node.along(&here.axis, wrench)
 }

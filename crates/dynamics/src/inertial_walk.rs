@@ -53,6 +53,11 @@ pub(crate) fn inertial_walk<const N: usize>(
             Freedom::None => {}
             Freedom::Angular => a.angular = plus(&a.angular, &times(&splat(&here.axis), rates[node.speed])),
             Freedom::Linear => a.linear = plus(&a.linear, &times(&splat(&here.axis), rates[node.speed])),
+            Freedom::Screw { pitch } => {
+                let step = times(&splat(&here.axis), rates[node.speed]);
+                a.angular = plus(&a.angular, &step);
+                a.linear = plus(&a.linear, &times(&step, Lanes([pitch; N])));
+            }
         }
         accelerations[i] = a;
         let (mass, moment) = (Lanes([inertia.mass; N]), splat(&inertia.moment));

@@ -136,6 +136,16 @@ impl Moving {
         self.first.iter_mut().zip(other.first).for_each(|(a, b)| *a -= b);
         self
     }
+
+    fn dot(&self, other: &Self) -> Scalar {
+        let first = self.first.iter().zip(&other.first);
+        Scalar {
+            value: self.value.dot(&other.value),
+            first: first.map(|(a, b)| a.dot(&other.value) + self.value.dot(b)).collect(),
+            rate: self.rate.dot(&other.value) + self.value.dot(&other.rate),
+            second: self.second.dot(&other.value) + 2.0 * self.rate.dot(&other.rate) + self.value.dot(&other.second),
+        }
+    }
 }
 
 fn closures(system: &System, transforms: &Transforms<'_>, v: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
@@ -157,13 +167,8 @@ fn closures(system: &System, transforms: &Transforms<'_>, v: &[f64]) -> (DMatrix
                     k += 3;
                 }
                 Row::Along { axis } => {
-                    product_row(
-                        &Moving::new(transforms, p, axis.push(0.0), v),
-                        &gap,
-                        &mut gradient,
-                        &mut gamma,
-                        k,
-                    );
+                    let along = Moving::new(transforms, p, axis.push(0.0), v).dot(&gap);
+                    along.write(&mut gradient, &mut gamma, k);
                     k += 1;
                 }
                 Row::Angle {
@@ -173,7 +178,20 @@ fn closures(system: &System, transforms: &Transforms<'_>, v: &[f64]) -> (DMatrix
                 } => {
                     let a = Moving::new(transforms, p, on_predecessor.push(0.0), v);
                     let b = Moving::new(transforms, s, on_successor.push(0.0), v);
-                    product_row(&a, &b, &mut gradient, &mut gamma, k);
+                    a.dot(&b).write(&mut gradient, &mut gamma, k);
+                    k += 1;
+                }
+                Row::Screw { axis, pitch } => {
+                    let along = Moving::new(transforms, p, axis.push(0.0), v).dot(&gap);
+                    let e1 = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
+                    let e2 = axis.cross(&e1);
+                    let [a1, a2] = [e1, e2].map(|e| Moving::new(transforms, p, e.push(0.0), v));
+                    let [b1, b2] = [e1, e2].map(|e| Moving::new(transforms, s, e.push(0.0), v));
+                    let sine = a2.dot(&b1).plus(-1.0, &a1.dot(&b2));
+                    let cosine = a1.dot(&b1).plus(1.0, &a2.dot(&b2));
+                    along
+                        .plus(*pitch, &sine.angle(&cosine))
+                        .write(&mut gradient, &mut gamma, k);
                     k += 1;
                 }
             }
@@ -182,10 +200,45 @@ fn closures(system: &System, transforms: &Transforms<'_>, v: &[f64]) -> (DMatrix
     (gradient, gamma)
 }
 
-/// Gradient and bias of `a . b`.
-fn product_row(a: &Moving, b: &Moving, gradient: &mut DMatrix<f64>, gamma: &mut DVector<f64>, k: usize) {
-    for i in 0..gradient.ncols() {
-        gradient[(k, i)] = a.first[i].dot(&b.value) + a.value.dot(&b.first[i]);
+/// A function of the coordinates with its first derivatives, rate and bias of the second rate.
+struct Scalar {
+    value: f64,
+    first: Vec<f64>,
+    rate: f64,
+    second: f64,
+}
+
+impl Scalar {
+    /// `self + factor other`
+    fn plus(mut self, factor: f64, other: &Self) -> Self {
+        self.value += factor * other.value;
+        self.rate += factor * other.rate;
+        self.second += factor * other.second;
+        self.first
+            .iter_mut()
+            .zip(&other.first)
+            .for_each(|(a, b)| *a += factor * b);
+        self
     }
-    gamma[k] = a.second.dot(&b.value) + 2.0 * a.rate.dot(&b.rate) + a.value.dot(&b.second);
+
+    /// The angle with this sine and that cosine, both with the same factor.
+    fn angle(&self, cosine: &Self) -> Self {
+        let (s, c) = (self.value, cosine.value);
+        let square = s * s + c * c;
+        let rate = (c * self.rate - s * cosine.rate) / square;
+        let first = self.first.iter().zip(&cosine.first);
+        Self {
+            value: s.atan2(c),
+            first: first.map(|(ds, dc)| (c * ds - s * dc) / square).collect(),
+            rate,
+            second: (c * self.second - s * cosine.second - 2.0 * rate * (c * cosine.rate + s * self.rate)) / square,
+        }
+    }
+
+    fn write(&self, gradient: &mut DMatrix<f64>, gamma: &mut DVector<f64>, k: usize) {
+        for (i, first) in self.first.iter().enumerate() {
+            gradient[(k, i)] = *first;
+        }
+        gamma[k] = self.second;
+    }
 }

@@ -4,7 +4,7 @@ use crate::evaluate::inertial_wrench;
 use crate::load::{Reaction, ReactionLoad};
 use crate::system::System;
 use crate::workspace::Workspace;
-use linkdyn_kinematics::{Freedom, LinkId, Node, NodePosition, Twist, Wrench};
+use linkdyn_kinematics::{LinkId, Node, NodePosition, Twist, Wrench};
 
 /// Increments of acceleration for rates of the speeds alone, outward.
 #[inline]
@@ -13,11 +13,7 @@ fn acceleration_step(node: &Node, here: &NodePosition, before: &Twist, rate: imp
         angular: before.angular,
         linear: before.linear + before.angular.cross(&here.arm),
     };
-    match node.freedom {
-        Freedom::None => {}
-        Freedom::Angular => twist.angular += here.axis * rate(node.speed),
-        Freedom::Linear => twist.linear += here.axis * rate(node.speed),
-    }
+    node.advance(&here.axis, rate, &mut twist);
     twist
 }
 

@@ -1,6 +1,6 @@
 //! Closures: the equations of cut joints that turn a tree into a mechanism with loops.
 //!
-//! A cut joint keeps some relative motions of two frames from happening. Every lower pair is a list of three kinds of
+//! A cut joint keeps some relative motions of two frames from happening. Every lower pair is a list of four kinds of
 //! [`Row`]s, each of which is the same thing seen three ways: a residual `phi(q)`, a gradient of it, and a wrench on the
 //! predecessor (the opposite on the successor). Multipliers are the sizes of those wrenches: the generalised force of the
 //! closure is `+G^T lambda` with `G = d phi'/dv`.
@@ -8,8 +8,10 @@
 use crate::joint::Joint;
 use crate::motion::{Accelerations, Positions, Velocities};
 use crate::tree::{Freedom, LinkId, Tree};
+use crate::turned::{Turned, spin};
 use crate::{Pose, Twist, Wrench};
 use nalgebra::{Unit, Vector3};
+use std::f64::consts::TAU;
 
 /// A frame fixed on a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +24,8 @@ pub struct Attachment {
 
 /// An elementary closure equation between a frame on the predecessor and one on the successor.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
 pub enum Row {
     /// Three equations: the origins coincide, `phi = r_pre - r_suc` in global axes \[m\]. Multipliers: force on the
     /// predecessor in global axes \[N\].
@@ -42,6 +46,16 @@ pub enum Row {
         /// Cosine of the angle \[-\].
         cosine: f64,
     },
+    /// One equation: along `axis` the successor is displaced in proportion to its turn about it,
+    /// `phi = axis . (r_pre - r_suc) + pitch * turn` \[m\], with whole turns such that `phi` is smallest. `axis` is a unit vector of both
+    /// frames, which other equations keep parallel. Multiplier: force on the predecessor along `axis` with a torque of
+    /// `-pitch` times that \[N\].
+    Screw {
+        /// Direction in both frames.
+        axis: Vector3<f64>,
+        /// Slide for a turn by one radian \[m/rad\].
+        pitch: f64,
+    },
 }
 
 impl Row {
@@ -49,7 +63,7 @@ impl Row {
     pub fn equations(&self) -> usize {
         match self {
             Row::Coincident => 3,
-            Row::Along { .. } | Row::Angle { .. } => 1,
+            Row::Along { .. } | Row::Angle { .. } | Row::Screw { .. } => 1,
         }
     }
 }
@@ -100,7 +114,7 @@ impl Ends {
 
 impl Closure {
     /// Cuts `joint` between two frames. The joint's axes are those of the predecessor frame, as for
-    /// [`Tree::attach`]; at zero joint coordinates both frames coincide.
+    /// [`Tree::attach`]; at zero joint coordinates both frames coincide. A joint of one's own has the equations that it brings.
     ///
     /// # Panics
     /// If a link is not of this tree.
@@ -170,7 +184,7 @@ impl Closure {
         for row in &self.rows {
             match row {
                 Row::Coincident => names.extend(["fx", "fy", "fz"].map(String::from)),
-                Row::Along { .. } => {
+                Row::Along { .. } | Row::Screw { .. } => {
                     forces += 1;
                     names.push(format!("f{forces}"));
                 }
@@ -202,6 +216,17 @@ impl Closure {
         positions.0[attachment.link.node()].rotation * (attachment.pose.rotation * local)
     }
 
+    /// How far the successor is turned about `axis`, a unit vector of both frames.
+    #[inline]
+    fn turned(&self, axis: &Vector3<f64>, positions: &Positions) -> Turned {
+        let (e1, e2) = plane_of(&Unit::new_unchecked(*axis));
+        let across = |side| [e1, e2].map(|e| self.direction(side, positions, &e));
+        Turned {
+            one: across(&self.predecessor),
+            two: across(&self.successor),
+        }
+    }
+
     /// Residual `phi`, one number an equation \[m or -\].
     pub fn residual(&self, positions: &Positions, phi: &mut [f64]) {
         let (p, s) = (&self.predecessor, &self.successor);
@@ -219,6 +244,17 @@ impl Closure {
                 } => {
                     let a = self.direction(p, positions, on_predecessor);
                     phi[k] = a.dot(&self.direction(s, positions, on_successor)) - cosine;
+                }
+                Row::Screw { axis, pitch } => {
+                    let along = self.direction(p, positions, axis).dot(&gap);
+                    let phi_of_no_turn = along + pitch * self.turned(axis, positions).angle();
+                    let period = TAU * pitch.abs();
+                    let turns = if period > 0.0 {
+                        (phi_of_no_turn / period).round()
+                    } else {
+                        0.0
+                    };
+                    phi[k] = phi_of_no_turn - turns * period;
                 }
             }
             k += row.equations();
@@ -249,6 +285,11 @@ impl Closure {
                     let b = self.direction(s, positions, on_successor);
                     rate[k] = (v_one.angular - v_two.angular).dot(&a.cross(&b));
                 }
+                Row::Screw { axis, pitch } => {
+                    let u = self.direction(p, positions, axis);
+                    let turn = self.turned(axis, positions).rate(&v_one.angular, &v_two.angular);
+                    rate[k] = u.dot(&gap_rate) + v_one.angular.cross(&u).dot(&gap) + pitch * turn;
+                }
             }
             k += row.equations();
         }
@@ -272,7 +313,8 @@ impl Closure {
                     let here = &positions.0[mover.node];
                     let column = match mover.freedom {
                         Freedom::Linear => here.axis,
-                        _ => here.axis.cross(&(ends.one - here.origin)),
+                        Freedom::Screw { pitch } => here.axis.cross(&(ends.one - here.origin)) + here.axis * pitch,
+                        Freedom::Angular | Freedom::None => here.axis.cross(&(ends.one - here.origin)),
                     };
                     put_column(mover, column);
                 }
@@ -280,7 +322,8 @@ impl Closure {
                     let here = &positions.0[mover.node];
                     let column = match mover.freedom {
                         Freedom::Linear => -here.axis,
-                        _ => (ends.two - here.origin).cross(&here.axis),
+                        Freedom::Screw { pitch } => (ends.two - here.origin).cross(&here.axis) - here.axis * pitch,
+                        Freedom::Angular | Freedom::None => (ends.two - here.origin).cross(&here.axis),
                     };
                     put_column(mover, column);
                 }
@@ -288,9 +331,11 @@ impl Closure {
                 let unit = self.unit_wrench(row, positions);
                 let share = |mover: &Mover| {
                     let here = &positions.0[mover.node];
+                    let torque = || here.axis.dot(&unit.shifted(&(ends.two - here.origin)).torque);
                     match mover.freedom {
                         Freedom::Linear => here.axis.dot(&unit.force),
-                        _ => here.axis.dot(&unit.shifted(&(ends.two - here.origin)).torque),
+                        Freedom::Screw { pitch } => torque() + here.axis.dot(&unit.force) * pitch,
+                        Freedom::Angular | Freedom::None => torque(),
                     }
                 };
                 for mover in &self.on_predecessor {
@@ -324,6 +369,10 @@ impl Closure {
             } => {
                 let a = self.direction(&self.predecessor, positions, on_predecessor);
                 unit.torque = a.cross(&self.direction(&self.successor, positions, on_successor));
+            }
+            Row::Screw { axis, pitch } => {
+                unit.force = self.direction(&self.predecessor, positions, axis);
+                unit.torque = self.turned(axis, positions).gradient() * *pitch;
             }
         }
         unit
@@ -362,19 +411,24 @@ impl Closure {
         let (p, s) = (&self.predecessor, &self.successor);
         let (v_one, v_two) = (&velocities.0[p.link.node()], &velocities.0[s.link.node()]);
         let (a_one, a_two) = (&biases.0[p.link.node()], &biases.0[s.link.node()]);
-        let spin = |w: &Vector3<f64>, a: &Vector3<f64>, r: &Vector3<f64>| a.cross(r) + w.cross(&w.cross(r));
         let gap_second = a_one.linear + spin(&v_one.angular, &a_one.angular, &ends.arm_one)
             - a_two.linear
             - spin(&v_two.angular, &a_two.angular, &ends.arm_two);
+        let along = |axis: &Vector3<f64>| {
+            let u = self.direction(p, positions, axis);
+            u.dot(&gap_second)
+                + 2.0 * v_one.angular.cross(&u).dot(&gap_rate(v_one, v_two, ends))
+                + spin(&v_one.angular, &a_one.angular, &u).dot(&(ends.one - ends.two))
+        };
         let mut k = 0;
         for row in &self.rows {
             match row {
                 Row::Coincident => gamma[k..k + 3].copy_from_slice(gap_second.as_slice()),
-                Row::Along { axis } => {
-                    let u = self.direction(p, positions, axis);
-                    gamma[k] = u.dot(&gap_second)
-                        + 2.0 * v_one.angular.cross(&u).dot(&gap_rate(v_one, v_two, ends))
-                        + spin(&v_one.angular, &a_one.angular, &u).dot(&(ends.one - ends.two));
+                Row::Along { axis } => gamma[k] = along(axis),
+                Row::Screw { axis, pitch } => {
+                    let w = [&v_one.angular, &v_two.angular];
+                    let turn = self.turned(axis, positions);
+                    gamma[k] = along(axis) + pitch * turn.bias(w, [&a_one.angular, &a_two.angular]);
                 }
                 Row::Angle {
                     on_predecessor,
@@ -475,6 +529,13 @@ fn rows_of(joint: &Joint) -> Vec<Row> {
             rows.push(Row::Along { axis: **normal });
             rows.extend(parallel(normal));
         }
+        Joint::Screw { axis, pitch } => {
+            rows.extend(across(axis));
+            rows.extend(parallel(axis));
+            let (axis, pitch) = (**axis, *pitch);
+            rows.push(Row::Screw { axis, pitch });
+        }
+        Joint::Custom(custom) => rows.extend(custom.rows()),
         Joint::Free => {}
     }
     rows

@@ -35,6 +35,11 @@ impl Tree {
                         slide.rotation.transpose() * slide.axis,
                     )
                 }
+                Motion::Screw(turn, pitch) => {
+                    let origin = turn.origin + turn.axis * (pitch * q[node.coordinate]);
+                    let rotation = turn.rotation(q[node.coordinate]);
+                    (homogeneous(rotation, origin), rotation.transpose() * turn.axis)
+                }
                 Motion::Ball(offset) => {
                     let turned = quaternion_rotation(&q[node.coordinate..node.coordinate + 4]);
                     (homogeneous(offset.rotation * turned, offset.origin), Vector3::x())
@@ -45,12 +50,9 @@ impl Tree {
             local.push(x);
             generators.push(match node.freedom {
                 Freedom::None => Matrix4::zeros(),
-                Freedom::Angular => axis.cross_matrix().to_homogeneous_zero(),
-                Freedom::Linear => {
-                    let mut s = Matrix4::zeros();
-                    s.fixed_view_mut::<3, 1>(0, 3).copy_from(&axis);
-                    s
-                }
+                Freedom::Angular => generator(&axis, 1.0, 0.0),
+                Freedom::Linear => generator(&axis, 0.0, 1.0),
+                Freedom::Screw { pitch } => generator(&axis, 1.0, pitch),
             });
         }
         Transforms {
@@ -133,15 +135,10 @@ fn homogeneous(rotation: nalgebra::Matrix3<f64>, origin: Vector3<f64>) -> Matrix
     crate::Pose { rotation, origin }.to_homogeneous()
 }
 
-trait ToHomogeneousZero {
-    fn to_homogeneous_zero(self) -> Matrix4<f64>;
-}
-
-impl ToHomogeneousZero for nalgebra::Matrix3<f64> {
-    /// A 3 x 3 block in an else empty 4 x 4 matrix.
-    fn to_homogeneous_zero(self) -> Matrix4<f64> {
-        let mut m = Matrix4::zeros();
-        m.fixed_view_mut::<3, 3>(0, 0).copy_from(&self);
-        m
-    }
+/// Derivative of a transform behind it: so much turn about an axis with so much slide along it.
+fn generator(axis: &Vector3<f64>, turn: f64, slide: f64) -> Matrix4<f64> {
+    let mut s = Matrix4::zeros();
+    s.fixed_view_mut::<3, 3>(0, 0).copy_from(&(axis.cross_matrix() * turn));
+    s.fixed_view_mut::<3, 1>(0, 3).copy_from(&(axis * slide));
+    s
 }

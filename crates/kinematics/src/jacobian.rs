@@ -1,7 +1,7 @@
 //! Jacobians of points and frames: velocities as linear functions of the speeds.
 
 use crate::motion::Positions;
-use crate::tree::{Freedom, LinkId, Tree};
+use crate::tree::{LinkId, Tree};
 use nalgebra::{DMatrix, Vector3};
 
 impl Tree {
@@ -16,12 +16,9 @@ impl Tree {
         let mut jacobian = DMatrix::zeros(6, self.speeds());
         for i in self.path(link) {
             let (node, here) = (&self.nodes()[i], &positions.nodes()[i]);
-            let (angular, linear) = match node.freedom {
-                Freedom::None => continue,
-                Freedom::Angular => (here.axis, here.axis.cross(&(p - here.origin))),
-                Freedom::Linear => (Vector3::zeros(), here.axis),
-            };
-            jacobian.fixed_view_mut::<3, 1>(0, node.speed).copy_from(&angular);
+            let unit = node.unit_twist(&here.axis);
+            let linear = unit.linear + unit.angular.cross(&(p - here.origin));
+            jacobian.fixed_view_mut::<3, 1>(0, node.speed).copy_from(&unit.angular);
             jacobian.fixed_view_mut::<3, 1>(3, node.speed).copy_from(&linear);
         }
         jacobian

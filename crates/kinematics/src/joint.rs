@@ -4,7 +4,7 @@
 //! freedom each (a turn about an axis, a slide along one); between the steps of one joint there is nothing. The
 //! recursions then know two kinds of freedom and no kinds of joints, and a new joint is a new list of steps.
 
-use crate::{Pose, TreeError};
+use crate::{Custom, Pose, TreeError};
 use nalgebra::{Matrix3, Unit, Vector3};
 
 /// A joint between two links. Axes are unit vectors in the joint's frame on the predecessor.
@@ -23,6 +23,13 @@ pub enum Joint {
     Prismatic {
         /// Direction of the slide.
         axis: Unit<Vector3<f64>>,
+    },
+    /// One turn \[rad\] about an axis with a slide along it in proportion.
+    Screw {
+        /// Axis of turn and slide.
+        axis: Unit<Vector3<f64>>,
+        /// Slide for a turn by one radian \[m/rad\]: the lead over 2 pi, negative for a left-hand thread.
+        pitch: f64,
     },
     /// Slide \[m\] along and turn \[rad\] about the same axis, in this order.
     Cylindrical {
@@ -51,6 +58,8 @@ pub enum Joint {
     /// Nothing is held: slides \[m\] along x, y and z of the predecessor, then a turn as of [`Joint::Spherical`]. As a cut it
     /// has no equations.
     Free,
+    /// Freedoms and equations of one's own choice.
+    Custom(Custom),
 }
 
 impl Joint {
@@ -86,7 +95,7 @@ impl Joint {
     pub fn coordinate_names(&self) -> &'static [&'static str] {
         match self {
             Joint::Fixed => &[],
-            Joint::Revolute { .. } => &["psi"],
+            Joint::Revolute { .. } | Joint::Screw { .. } => &["psi"],
             Joint::Prismatic { .. } => &["z"],
             Joint::Cylindrical { .. } => &["z", "psi"],
             Joint::Universal { .. } => &["psi", "theta"],
@@ -94,6 +103,7 @@ impl Joint {
             Joint::Spherical => &["w", "x", "y", "z"],
             Joint::Planar { .. } => &["x", "y", "psi"],
             Joint::Free => &["x", "y", "z", "qw", "qx", "qy", "qz"],
+            Joint::Custom(_) => &["q1", "q2", "q3", "q4", "q5", "q6"][..self.speeds()],
         }
     }
 
@@ -119,6 +129,7 @@ impl Joint {
             Joint::Fixed => [none; 6],
             Joint::Revolute { axis } => [turn(axis), none, none, none, none, none],
             Joint::Prismatic { axis } => [slide(axis), none, none, none, none, none],
+            Joint::Screw { axis, pitch } => [Some(Step::Screw(axis, pitch)), none, none, none, none, none],
             Joint::Cylindrical { axis } => [slide(axis), turn(axis), none, none, none, none],
             Joint::Universal { first, second } => [turn(first), turn(second), none, none, none, none],
             Joint::SphericalZyx => [turn(z), turn(y), turn(x), none, none, none],
@@ -128,12 +139,14 @@ impl Joint {
                 [slide(along), slide(across), turn(normal), none, none, none]
             }
             Joint::Free => [slide(x), slide(y), slide(z), ball(0), ball(1), ball(2)],
+            Joint::Custom(custom) => custom.chain(),
         };
         list.into_iter().flatten()
     }
 
-    /// Checks that every axis of the joint is a finite unit vector, that those of a universal joint are not
-    /// parallel, and that those of a planar joint are at right angles.
+    /// Checks that every axis of the joint is a finite unit vector and a pitch finite, that those of a universal joint are not
+    /// parallel, and that those of a planar joint are at right angles; and that a joint of one's own has one to six
+    /// freedoms, and equations for all others or none.
     ///
     /// # Errors
     /// [`TreeError::BadAxis`]. [`crate::Tree::attach`] checks by itself, [`crate::Closure::new`] trusts its caller.
@@ -141,8 +154,10 @@ impl Joint {
         let unit = |a: &Unit<Vector3<f64>>| (a.norm() - 1.0).abs() < 1e-9;
         let sound = match self {
             Joint::Revolute { axis } | Joint::Prismatic { axis } | Joint::Cylindrical { axis } => unit(axis),
+            Joint::Screw { axis, pitch } => unit(axis) && pitch.is_finite(),
             Joint::Universal { first, second } => unit(first) && unit(second) && first.cross(second).norm() > 1e-6,
             Joint::Planar { along, normal } => unit(along) && unit(normal) && along.dot(normal).abs() < 1e-9,
+            Joint::Custom(custom) => custom.is_sound(unit),
             Joint::Fixed | Joint::SphericalZyx | Joint::Spherical | Joint::Free => true,
         };
         if sound {
@@ -160,6 +175,8 @@ pub(crate) enum Step {
     Turn(Unit<Vector3<f64>>),
     /// Slide along an axis.
     Slide(Unit<Vector3<f64>>),
+    /// Turn about an axis with a slide along it of so many metres a radian.
+    Screw(Unit<Vector3<f64>>, f64),
     /// The k-th of the three body-fixed angular velocities of a ball joint; the first one carries the rotation.
     Ball(usize),
 }
@@ -216,6 +233,8 @@ pub(crate) enum Motion {
     Turn(Turn),
     /// Constant rotation, origin `r + u q`.
     Slide(Slide),
+    /// A turn, with the origin at `r + u pitch q`.
+    Screw(Turn, f64),
     /// Quaternion behind a constant offset: the first freedom of a ball joint.
     Ball(Pose),
     /// The second (1) or third (2) freedom of a ball joint: the pose is that of the node before.

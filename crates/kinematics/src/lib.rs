@@ -2,6 +2,7 @@
 
 pub mod assembly;
 mod closure;
+mod custom;
 mod derivatives;
 pub mod dh;
 mod jacobian;
@@ -11,8 +12,10 @@ pub mod notation;
 mod pose;
 mod spatial;
 mod tree;
+mod turned;
 
 pub use closure::{Attachment, Closure, Ends, Row};
+pub use custom::{Custom, JointStep};
 pub use derivatives::Transforms;
 pub use joint::Joint;
 pub use motion::{Accelerations, NodePosition, Positions, Velocities};

@@ -119,11 +119,7 @@ impl Tree {
         for (i, node) in self.nodes().iter().enumerate().skip(1) {
             let here = &positions.0[i];
             let mut a = self.bias_acceleration(i, positions, velocities, accelerations, v);
-            match node.freedom {
-                Freedom::None => {}
-                Freedom::Angular => a.angular += here.axis * rates[node.speed],
-                Freedom::Linear => a.linear += here.axis * rates[node.speed],
-            }
+            node.advance(&here.axis, |speed| rates[speed], &mut a);
             accelerations.0[i] = a;
         }
     }
@@ -178,6 +174,11 @@ impl Tree {
                 angular += carrier.cross(&here.axis) * v[node.speed];
             }
             Freedom::Linear => linear += w.cross(&here.axis) * (2.0 * v[node.speed]),
+            Freedom::Screw { pitch } => {
+                let turning = w.cross(&here.axis) * v[node.speed];
+                angular += turning;
+                linear += turning * (2.0 * pitch);
+            }
         }
         Twist { angular, linear }
     }
@@ -220,6 +221,11 @@ fn place(node: &Node, i: usize, q: &[f64], positions: &mut [NodePosition]) {
             here.rotation = r * slide.rotation;
             here.arm = r * slide.origin + here.axis * q[node.coordinate];
         }
+        Motion::Screw(turn, pitch) => {
+            here.rotation = r * turn.rotation(q[node.coordinate]);
+            here.axis = r * turn.axis;
+            here.arm = r * turn.origin + here.axis * (pitch * q[node.coordinate]);
+        }
         Motion::Ball(offset) => {
             let turned = quaternion_rotation(&q[node.coordinate..node.coordinate + 4]);
             here.rotation = r * (offset.rotation * turned);
@@ -242,12 +248,10 @@ fn place(node: &Node, i: usize, q: &[f64], positions: &mut [NodePosition]) {
 
 #[inline]
 fn velocity(node: &Node, here: &NodePosition, before: &Twist, v: &[f64]) -> Twist {
-    let mut angular = before.angular;
-    let mut linear = before.linear + before.angular.cross(&here.arm);
-    match node.freedom {
-        Freedom::None => {}
-        Freedom::Angular => angular += here.axis * v[node.speed],
-        Freedom::Linear => linear += here.axis * v[node.speed],
-    }
-    Twist { angular, linear }
+    let mut twist = Twist {
+        angular: before.angular,
+        linear: before.linear + before.angular.cross(&here.arm),
+    };
+    node.advance(&here.axis, |speed| v[speed], &mut twist);
+    twist
 }

@@ -1,7 +1,8 @@
 //! Trees of links: topology and the numbering of coordinates and speeds.
 
 use crate::joint::{Joint, Motion, Slide, Step, Turn};
-use crate::{Pose, joint};
+use crate::{Pose, Twist, Wrench, joint};
+use nalgebra::Vector3;
 use thiserror::Error;
 
 /// A link of a [`Tree`]; [`LinkId::GROUND`] is the base.
@@ -19,7 +20,7 @@ impl LinkId {
 }
 
 /// The way a node moves against the node before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Freedom {
     /// Not at all.
     None,
@@ -27,6 +28,11 @@ pub enum Freedom {
     Angular,
     /// It slides along the node's axis.
     Linear,
+    /// It turns about the node's axis and slides along it in proportion.
+    Screw {
+        /// Slide for a turn by one radian \[m/rad\].
+        pitch: f64,
+    },
 }
 
 /// A frame of the tree: a link, or a step between the freedoms of one joint.
@@ -43,6 +49,45 @@ pub struct Node {
 }
 
 impl Node {
+    /// Motion of the node for a unit speed of its freedom, at its origin; `axis` is the node's.
+    #[inline]
+    pub fn unit_twist(&self, axis: &Vector3<f64>) -> Twist {
+        let (mut angular, mut linear) = (Vector3::zeros(), Vector3::zeros());
+        match self.freedom {
+            Freedom::None => {}
+            Freedom::Angular => angular = *axis,
+            Freedom::Linear => linear = *axis,
+            Freedom::Screw { pitch } => (angular, linear) = (*axis, axis * pitch),
+        }
+        Twist { angular, linear }
+    }
+
+    /// Adds what the node's own freedom does at the `rate` of its speed to the motion of its origin; `axis` is the node's. The rate
+    /// may be one of velocity or of acceleration, and is not asked for without a freedom.
+    #[inline]
+    pub fn advance(&self, axis: &Vector3<f64>, rate: impl FnOnce(usize) -> f64, twist: &mut Twist) {
+        match self.freedom {
+            Freedom::None => {}
+            Freedom::Angular => twist.angular += axis * rate(self.speed),
+            Freedom::Linear => twist.linear += axis * rate(self.speed),
+            Freedom::Screw { pitch } => {
+                let step = axis * rate(self.speed);
+                twist.angular += step;
+                twist.linear += step * pitch;
+            }
+        }
+    }
+
+    /// Part of a wrench at the node's origin that works on its freedom \[N m, N\]; `axis` is the node's.
+    #[inline]
+    pub fn along(&self, axis: &Vector3<f64>, wrench: &Wrench) -> f64 {
+        match self.freedom {
+            Freedom::Linear => axis.dot(&wrench.force),
+            Freedom::Screw { pitch } => axis.dot(&(wrench.torque + wrench.force * pitch)),
+            Freedom::Angular | Freedom::None => axis.dot(&wrench.torque),
+        }
+    }
+
     /// Whether the node is one of the three freedoms of a ball joint.
     #[inline]
     pub(crate) fn is_ball(&self) -> bool {
@@ -79,10 +124,10 @@ pub enum TreeError {
         /// See [`Pose::defect`].
         defect: f64,
     },
-    /// A joint axis is not a unit vector, the two axes of a universal joint are parallel, or those of a planar joint not at
-    /// right angles.
+    /// A joint axis is not a unit vector, a pitch not finite, the two axes of a universal joint are parallel, or those of a planar joint not at
+    /// right angles, or a joint of one's own has freedoms and equations that do not make six.
     #[error(
-        "axes of joint {joint:?} must be finite unit vectors, those of a universal joint not parallel, those of a planar joint at right angles"
+        "axes of joint {joint:?} must be finite unit vectors, those of a universal joint not parallel, those of a planar joint at right angles, pitches finite, and a custom joint needs one to six freedoms with equations for all others or none"
     )]
     BadAxis {
         /// The joint.
@@ -159,6 +204,10 @@ impl Tree {
                     origin: offset.origin,
                 };
                 (Freedom::Linear, Motion::Slide(slide), 1)
+            }
+            Step::Screw(axis, pitch) => {
+                let turn = Turn::new(&offset, &axis);
+                (Freedom::Screw { pitch }, Motion::Screw(turn, pitch), 1)
             }
             Step::Ball(0) => (Freedom::Angular, Motion::Ball(offset), 4),
             Step::Ball(k) => (Freedom::Angular, Motion::BallNext(k), 0),
@@ -251,7 +300,7 @@ impl Tree {
             let (c, s) = (node.coordinate, node.speed);
             match node.motion {
                 Motion::Ball(_) => joint::quaternion_rate(&q[c..c + 4], &v[s..s + 3], &mut rates[c..c + 4]),
-                Motion::Turn(_) | Motion::Slide(_) => rates[c] = v[s],
+                Motion::Turn(_) | Motion::Slide(_) | Motion::Screw(..) => rates[c] = v[s],
                 Motion::BallNext(_) | Motion::Still(_) => {}
             }
         }
@@ -266,7 +315,7 @@ impl Tree {
                     let old = [q[c], q[c + 1], q[c + 2], q[c + 3]];
                     joint::quaternion_turn(&old, &step[s..s + 3], &mut q[c..c + 4]);
                 }
-                Motion::Turn(_) | Motion::Slide(_) => q[c] += step[s],
+                Motion::Turn(_) | Motion::Slide(_) | Motion::Screw(..) => q[c] += step[s],
                 Motion::BallNext(_) | Motion::Still(_) => {}
             }
         }

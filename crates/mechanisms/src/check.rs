@@ -94,6 +94,12 @@ impl Linkage {
 
 impl CutItem {
     fn check(&self) -> Result<(), BuildError> {
+        if let Joint::Custom(custom) = &self.joint
+            && !custom.can_be_cut()
+        {
+            let joint = self.name.clone();
+            return Err(BuildError::NoEquations { joint });
+        }
         let Some(clearance) = &self.clearance else {
             return Ok(());
         };

@@ -87,6 +87,14 @@ pub enum BuildError {
         /// Names.
         found: usize,
     },
+    /// A cut joint of one's own has no equations.
+    #[error(
+        "custom joint `{joint}` is cut, but brings no equations; give it those of what it holds, or let it carry a link"
+    )]
+    NoEquations {
+        /// The cut joint.
+        joint: String,
+    },
     /// Clearance is for revolute joints.
     #[error("cut joint `{joint}` has clearance, but is no revolute joint")]
     ClearanceKind {

@@ -43,5 +43,7 @@ fn kind(joint: &Joint) -> &'static str {
         Joint::Spherical => "spherical",
         Joint::Planar { .. } => "planar",
         Joint::Free => "free",
+        Joint::Screw { .. } => "screw",
+        Joint::Custom(_) => "custom",
     }
 }

@@ -85,6 +85,8 @@ pub struct JointItem {
     pub axis: Option<[f64; 3]>,
     /// Second axis of a universal joint, y unless given; first slide of a planar one, x unless given.
     pub second_axis: Option<[f64; 3]>,
+    /// Lead of a screw: slide of its successor for a whole turn \[m\], negative for a left-hand thread.
+    pub lead: Option<f64>,
     /// One side; coordinates say how the successor moves against it.
     #[serde(default)]
     pub predecessor: MountItem,
@@ -115,6 +117,8 @@ pub enum Kind {
     Revolute,
     /// One slide along `axis`.
     Prismatic,
+    /// Turn about `axis` with a slide along it by `lead` for a whole turn.
+    Screw,
     /// Slide along and turn about `axis`.
     Cylindrical,
     /// Turn about `axis`, then about `second_axis`.

@@ -10,6 +10,7 @@ use crate::spring::Spring;
 use linkdyn_friction::{BearingModel, Characteristic, Exponential, JournalBearing, Surface};
 use linkdyn_kinematics::{Joint, Pose};
 use nalgebra::{Rotation3, Unit, Vector3};
+use std::f64::consts::TAU;
 
 /// Adds all joints, in the order of the file.
 pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) {
@@ -87,6 +88,7 @@ fn backwards(joint: Joint) -> Option<Joint> {
         Joint::Revolute { axis } => Some(Joint::Revolute { axis: -axis }),
         Joint::Prismatic { axis } => Some(Joint::Prismatic { axis: -axis }),
         Joint::Cylindrical { axis } => Some(Joint::Cylindrical { axis: -axis }),
+        Joint::Screw { axis, pitch } => Some(Joint::Screw { axis: -axis, pitch }),
         Joint::Fixed => Some(Joint::Fixed),
         _ => None,
     }
@@ -111,10 +113,25 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
         axis("axis", item.axis, Vector3::z())?,
         axis("second_axis", item.second_axis, second)?,
     );
+    match item.lead {
+        Some(lead) if item.kind != Kind::Screw || !lead.is_finite() => {
+            let message =
+                format!("{lead}: a screw has a lead, a finite number of metres a turn, and no other joint has one");
+            faults.add(&["joints", name, "lead"], message);
+        }
+        None if item.kind == Kind::Screw => {
+            faults.add(&["joints", name], "a screw needs its `lead`, in metres a turn");
+        }
+        _ => {}
+    }
     let joint = match item.kind {
         Kind::Fixed => Joint::Fixed,
         Kind::Revolute => Joint::Revolute { axis: first },
         Kind::Prismatic => Joint::Prismatic { axis: first },
+        Kind::Screw => Joint::Screw {
+            axis: first,
+            pitch: item.lead.unwrap_or_default() / TAU,
+        },
         Kind::Cylindrical => Joint::Cylindrical { axis: first },
         Kind::Universal => Joint::Universal { first, second },
         Kind::Spherical => Joint::Spherical,
