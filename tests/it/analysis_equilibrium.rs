@@ -148,6 +148,7 @@ fn a_hanging_four_bar_lies_where_its_potential_energy_is_least() {
         let residual = mechanism
             .system()
             .violation(
+                0.0,
                 &found.q,
                 &[0.0; 3],
                 &mut linkdyn_dynamics::Workspace::new(mechanism.system()),

@@ -33,6 +33,7 @@ mod load_internals;
 mod methods_on_scenes;
 mod newton_euler;
 mod peers;
+mod prescribed;
 mod projection;
 mod puma560;
 mod reaction_loop;

@@ -40,10 +40,10 @@ proptest! {
         let (mut q, mut v) = (machine.q.clone(), machine.v.clone());
         machine.tree().displace(&mut q, &dq);
         v.iter_mut().zip(&dv).for_each(|(v, d)| *v += d);
-        let before = machine.system.violation(&q, &v, &mut work);
-        let found = machine.system.project(&mut q, &mut v, &mut work);
+        let before = machine.system.violation(0.0, &q, &v, &mut work);
+        let found = machine.system.project(0.0, &mut q, &mut v, &mut work);
         prop_assert_eq!(found.position, before.0);
-        let after = machine.system.violation(&q, &v, &mut work);
+        let after = machine.system.violation(0.0, &q, &v, &mut work);
         let size = work.positions().nodes().iter().fold(1.0, |s: f64, n| s.max(n.origin.amax()));
         prop_assert!(after.0 < 1e-14 * size.max(10.0), "position {:e} after {:e}", after.0, before.0);
         prop_assert!(after.1 < 1e-14 * size.max(10.0), "velocity {:e} after {:e}", after.1, before.1);
@@ -57,12 +57,12 @@ proptest! {
         machine.tree().displace(&mut q, &dq);
         v.iter_mut().zip(&dv).for_each(|(v, d)| *v += d);
         let (kept_q, kept_v) = (q.clone(), v.clone());
-        let (position, velocity) = machine.system.violation(&q, &v, &mut work);
+        let (position, velocity) = machine.system.violation(0.0, &q, &v, &mut work);
         prop_assume!(position.min(velocity) > 1e-12);
         let most = position.max(velocity);
-        prop_assert!(!machine.system.project_beyond(1.001 * most, &mut q, &mut v, &mut work).changed);
+        prop_assert!(!machine.system.project_beyond(0.0, 1.001 * most, &mut q, &mut v, &mut work).changed);
         prop_assert_eq!((&q, &v), (&kept_q, &kept_v));
-        prop_assert!(machine.system.project_beyond(0.999 * most, &mut q, &mut v, &mut work).changed);
+        prop_assert!(machine.system.project_beyond(0.0, 0.999 * most, &mut q, &mut v, &mut work).changed);
     }
 
     #[test]
@@ -71,13 +71,13 @@ proptest! {
         let mut work = machine.evaluate();
         let (mut q, mut v) = (machine.q.clone(), machine.v.clone());
         // Built closed to a few roundings, which one or two projections may still take away.
-        let settled = (0..5).any(|_| !machine.system.project(&mut q, &mut v, &mut work).changed);
+        let settled = (0..5).any(|_| !machine.system.project(0.0, &mut q, &mut v, &mut work).changed);
         let moved = |a: &[f64], b: &[f64]| largest(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
         prop_assert!(moved(&q, &machine.q) < 1e-12 && moved(&v, &machine.v) < 1e-11);
         // Long chains may keep on going to and fro by a rounding.
         prop_assume!(settled);
         let (kept_q, kept_v) = (q.clone(), v.clone());
-        let drift = machine.system.project(&mut q, &mut v, &mut work);
+        let drift = machine.system.project(0.0, &mut q, &mut v, &mut work);
         prop_assert!(!drift.changed, "{drift:?}");
         prop_assert_eq!((q, v), (kept_q, kept_v));
     }
@@ -94,7 +94,7 @@ proptest! {
         let (mut q, n) = (machine.q.clone(), machine.v.len());
         let given: Vec<f64> = machine.v.iter().zip(&dv).map(|(v, d)| v + d).collect();
         let mut v = given.clone();
-        machine.system.project(&mut q, &mut v, &mut work);
+        machine.system.project(0.0, &mut q, &mut v, &mut work);
         let way = DVector::from_vec(v) - DVector::from_vec(given);
         let mass = lagrange::equations(&machine.system, &machine.q, &machine.v).mass;
         // M (v - given) is a force of the closures: it has no power on any allowed speeds.
@@ -117,7 +117,7 @@ proptest! {
             }
         }
         let stretched = q != machine.q;
-        let drift = machine.system.project(&mut q, &mut v, &mut work);
+        let drift = machine.system.project(0.0, &mut q, &mut v, &mut work);
         prop_assert_eq!(drift.changed, stretched);
         prop_assert!(difference(&q, &machine.q) < 1e-15);
         prop_assert_eq!(v, machine.v);

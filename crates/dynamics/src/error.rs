@@ -47,6 +47,20 @@ pub enum SystemError {
         /// Freedoms of its joint.
         freedoms: usize,
     },
+    /// A prescribed motion is that of a coordinate which there is not.
+    #[error(
+        "coordinate {coordinate} with speed {speed} is prescribed, but there are {coordinates} and {speeds} of them"
+    )]
+    Guided {
+        /// Index of the coordinate.
+        coordinate: usize,
+        /// Index of the speed.
+        speed: usize,
+        /// Number of coordinates.
+        coordinates: usize,
+        /// Number of speeds.
+        speeds: usize,
+    },
 }
 
 /// Why accelerations do not exist at a state.

@@ -33,6 +33,9 @@ impl System {
         if !self.reaction_loads.is_empty() {
             self.solve_reaction_loads(t, v, work)?;
         }
+        if !self.guided.is_empty() {
+            work.power += self.guide_power(t, work);
+        }
         if work.constraint.redundant() > 0 {
             work.counters.redundant += 1;
         }
@@ -72,7 +75,7 @@ impl System {
             _ => self.factor_mass(work),
         };
         factored.map_err(|(speed, pivot)| DynamicsError::SingularMass { time: t, speed, pivot })?;
-        self.closure_columns(work);
+        self.closure_columns(at, work);
         match &mut work.mass {
             MassFactor::Composite(mass) => mass.inward(&mut work.columns),
             MassFactor::Articulated(mass) => {
@@ -184,7 +187,7 @@ impl System {
 
     /// Closure gradient and biases, drift terms, and unit forces of the reaction loads.
     #[inline]
-    fn closure_columns(&self, work: &mut Workspace) {
+    fn closure_columns(&self, at: &Instant<'_>, work: &mut Workspace) {
         let (positions, velocities) = (&work.positions, &work.velocities);
         let lagrange = self.formulation == Formulation::Lagrange;
         let mut first = 0;
@@ -215,6 +218,11 @@ impl System {
                     .for_each(|(g, phi)| *g += drift.beta * drift.beta * phi);
             }
             first += closure.equations();
+        }
+        if !self.guided.is_empty() {
+            let columns = &mut work.columns;
+            self.guide_gradient(|speed, equation, value| *columns.at_mut(speed, 1 + equation) = value);
+            self.guide_biases(at.t, at.q, at.v, work);
         }
         for (k, load) in self.reaction_loads.iter().enumerate() {
             *work.columns.at_mut(load.speed, self.first_unit() + k) = 1.0;

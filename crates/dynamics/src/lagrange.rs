@@ -21,7 +21,7 @@ pub struct LagrangeEquations {
     pub gamma: DVector<f64>,
 }
 
-/// The equations of `system` at a state, without its loads.
+/// The equations of `system` at a state, without its loads and prescribed motions.
 pub fn equations(system: &System, q: &[f64], v: &[f64]) -> LagrangeEquations {
     let tree = &system.tree;
     let n = tree.speeds();
@@ -84,7 +84,7 @@ impl LagrangeEquations {
                 *columns.at_mut(i, 1 + k) = self.gradient[(k, i)];
             }
         }
-        gamma.copy_from_slice(self.gamma.as_slice());
+        gamma[..self.gamma.len()].copy_from_slice(self.gamma.as_slice());
     }
 }
 
@@ -149,7 +149,7 @@ impl Moving {
 }
 
 fn closures(system: &System, transforms: &Transforms<'_>, v: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
-    let (n, m) = (system.tree.speeds(), system.equations);
+    let (n, m) = (system.tree.speeds(), system.closure_equations);
     let mut gradient = DMatrix::zeros(m, n);
     let mut gamma = DVector::zeros(m);
     let mut k = 0;

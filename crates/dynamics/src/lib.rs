@@ -7,6 +7,7 @@ mod constraint;
 mod energy;
 mod error;
 mod evaluate;
+mod guide;
 mod inertia;
 mod inertial_walk;
 mod influence;
@@ -28,6 +29,7 @@ mod workspace;
 
 pub use energy::Energy;
 pub use error::{DynamicsError, SystemError};
+pub use guide::{Guide, Guided};
 pub use inertia::{InertiaError, RigidInertia};
 pub use load::{Capacity, Instant, InternalState, Internals, Load, Loads, Motion, Reaction, ReactionLoad, Supports};
 pub use project::Drift;

@@ -23,25 +23,25 @@ pub struct Drift {
 }
 
 impl System {
-    /// Moves `q` and `v` back onto the closures along the shortest way in the metric of the mass matrix there. What `work` has been used
+    /// Moves `q` and `v` back onto the closures and prescribed motions at time `t` \[s\] along the shortest way in the metric of the mass matrix there. What `work` has been used
     /// for before does not matter.
     ///
     /// This is meant for drift: from far away use [`linkdyn_kinematics::assembly`].
-    pub fn project(&self, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
+    pub fn project(&self, t: f64, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
         let has_metric = self.set_metric(q, v, work);
-        self.project_by_metric(0.0, q, v, work, has_metric)
+        self.project_by_metric(t, 0.0, (q, v), work, has_metric)
     }
 
     /// As [`System::project`], but residuals up to `tolerance` \[m, -\] and rates up to it \[m/s, 1/s\] stay as they are, and the
     /// metric is that of the last evaluation in `work`: any mass matrix near the state serves as well, and costs nothing.
-    pub fn project_beyond(&self, tolerance: f64, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
+    pub fn project_beyond(&self, t: f64, tolerance: f64, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
         let has_metric = work.counters.evaluations > 0 || self.set_metric(q, v, work);
-        self.project_by_metric(tolerance, q, v, work, has_metric)
+        self.project_by_metric(t, tolerance, (q, v), work, has_metric)
     }
 
     /// Factors the mass matrix; false if it is singular.
     fn set_metric(&self, q: &[f64], v: &[f64], work: &mut Workspace) -> bool {
-        if self.closures.is_empty() {
+        if self.equations == 0 {
             return true;
         }
         let base = -self.gravity;
@@ -55,9 +55,9 @@ impl System {
 
     fn project_by_metric(
         &self,
+        t: f64,
         tolerance: f64,
-        q: &mut [f64],
-        v: &mut [f64],
+        (q, v): (&mut [f64], &mut [f64]),
         work: &mut Workspace,
         has_metric: bool,
     ) -> Drift {
@@ -65,7 +65,7 @@ impl System {
         if self.tree.normalise(q) > ROUNDING {
             drift.changed = true;
         }
-        if self.closures.is_empty() {
+        if self.equations == 0 {
             return drift;
         }
         if !has_metric {
@@ -80,9 +80,11 @@ impl System {
             .nodes()
             .iter()
             .fold(1.0_f64, |s, node| s.max(node.origin.amax()));
+        let guided = |s: f64, on: &crate::Guided| s.max(q[on.coordinate].abs());
+        let size = self.guided.iter().fold(size, guided);
         let mut factored = false;
         for iteration in 0..ITERATIONS {
-            let residual = self.residual(work);
+            let residual = self.residual(t, q, work);
             drift.remaining = residual;
             if iteration == 0 {
                 drift.position = residual;
@@ -98,7 +100,7 @@ impl System {
         }
         self.tree.velocities(&work.positions, v, &mut work.velocities);
         let fastest = v.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
-        drift.velocity = self.rate(work);
+        drift.velocity = self.rate(t, v, work);
         if drift.velocity > tolerance.max(ROUNDING * size * fastest) {
             self.factor_closures(work, &mut factored);
             self.closure_step(work);
@@ -109,32 +111,34 @@ impl System {
     }
 
     /// Largest closure residual and rate at a state \[m, -\], \[m/s, 1/s\].
-    pub fn violation(&self, q: &[f64], v: &[f64], work: &mut Workspace) -> (f64, f64) {
-        if self.closures.is_empty() {
+    pub fn violation(&self, t: f64, q: &[f64], v: &[f64], work: &mut Workspace) -> (f64, f64) {
+        if self.equations == 0 {
             return (0.0, 0.0);
         }
         self.tree.positions(q, &mut work.positions);
         self.tree.velocities(&work.positions, v, &mut work.velocities);
-        (self.residual(work), self.rate(work))
+        (self.residual(t, q, work), self.rate(t, v, work))
     }
 
     /// Residuals into `lambda`; returns the largest.
-    fn residual(&self, work: &mut Workspace) -> f64 {
+    fn residual(&self, t: f64, q: &[f64], work: &mut Workspace) -> f64 {
         let mut first = 0;
         for closure in &self.closures {
             closure.residual(&work.positions, &mut work.constraint.lambda[first..]);
             first += closure.equations();
         }
+        self.guide_residuals(t, q, work);
         largest(&work.constraint.lambda)
     }
 
     /// Rates into `lambda`; returns the largest.
-    fn rate(&self, work: &mut Workspace) -> f64 {
+    fn rate(&self, t: f64, v: &[f64], work: &mut Workspace) -> f64 {
         let mut first = 0;
         for closure in &self.closures {
             closure.rate(&work.positions, &work.velocities, &mut work.constraint.lambda[first..]);
             first += closure.equations();
         }
+        self.guide_rates(t, v, work);
         largest(&work.constraint.lambda)
     }
 
@@ -151,6 +155,8 @@ impl System {
             });
             first += closure.equations();
         }
+        let columns = &mut work.columns;
+        self.guide_gradient(|speed, equation, value| *columns.at_mut(speed, 1 + equation) = value);
         match &mut work.mass {
             MassFactor::Composite(mass) => mass.inward(&mut work.columns),
             MassFactor::Articulated(mass) => {

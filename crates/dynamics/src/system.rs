@@ -1,6 +1,7 @@
 //! A mechanical system: links with inertia on a tree, closures, loads. Immutable once built, so that threads may share it.
 
 use crate::error::SystemError;
+use crate::guide::Guided;
 use crate::inertia::{Body, RigidInertia};
 use crate::load::{Internals, Load, ReactionLoad};
 use linkdyn_kinematics::{Closure, LinkId, Tree, assembly};
@@ -67,6 +68,8 @@ pub struct Description {
     pub gravity: Vector3<f64>,
     /// Cut joints.
     pub closures: Vec<Closure>,
+    /// Coordinates that follow a prescribed motion.
+    pub guided: Vec<Guided>,
     /// Loads that depend on time, position and velocity.
     pub loads: Vec<Arc<dyn Load>>,
     /// Loads that depend on the reaction in the one-freedom joint that carries the link.
@@ -89,6 +92,7 @@ impl Description {
             inertias,
             gravity,
             closures: Vec::new(),
+            guided: Vec::new(),
             loads: Vec::new(),
             reaction_loads: Vec::new(),
             baumgarte: None,
@@ -108,6 +112,9 @@ pub struct System {
     pub(crate) inertias: Vec<RigidInertia>,
     pub(crate) gravity: Vector3<f64>,
     pub(crate) closures: Vec<Closure>,
+    pub(crate) guided: Vec<Guided>,
+    /// Those of the closures; behind them stand those of the guided coordinates.
+    pub(crate) closure_equations: usize,
     pub(crate) equations: usize,
     /// First those without internals that are not conservative, then those with internals (the conservative ones last), then
     /// conservative ones without.
@@ -232,8 +239,22 @@ impl System {
         let places = places.collect();
         loads.extend(with_internals);
         loads.extend(conservative);
+        for guided in &d.guided {
+            let (coordinates, speeds) = (d.tree.coordinates(), d.tree.speeds());
+            if guided.coordinate >= coordinates || guided.speed >= speeds {
+                return Err(SystemError::Guided {
+                    coordinate: guided.coordinate,
+                    speed: guided.speed,
+                    coordinates,
+                    speeds,
+                });
+            }
+        }
+        let closure_equations = assembly::equations(&d.closures);
         Ok(Self {
-            equations: assembly::equations(&d.closures),
+            equations: closure_equations + d.guided.len(),
+            closure_equations,
+            guided: d.guided,
             tree: d.tree,
             bodies,
             inertias: d.inertias,
@@ -262,7 +283,7 @@ impl System {
         &self.closures
     }
 
-    /// Number of closure equations, which is the number of multipliers.
+    /// Number of equations of closures and prescribed motions, which is the number of multipliers.
     pub fn equations(&self) -> usize {
         self.equations
     }
@@ -304,9 +325,11 @@ impl System {
         self.reaction_loads.iter().map(|load| load.speed)
     }
 
-    /// Times at which a load jumps \[s\], ascending.
+    /// Times at which a load or a prescribed motion jumps \[s\], ascending.
     pub fn stop_times(&self) -> Vec<f64> {
-        let mut times: Vec<f64> = self.loads.iter().flat_map(|load| load.stop_times()).collect();
+        let loads = self.loads.iter().flat_map(|load| load.stop_times());
+        let guides = self.guided.iter().flat_map(|guided| guided.guide.stop_times());
+        let mut times: Vec<f64> = loads.chain(guides).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
         times

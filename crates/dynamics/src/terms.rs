@@ -25,7 +25,7 @@ pub struct MotionTerms {
 impl MotionTerms {
     /// Room for those of `system`.
     pub fn new(system: &System) -> Self {
-        let (n, m) = (system.tree.speeds(), system.equations);
+        let (n, m) = (system.tree.speeds(), system.closure_equations);
         Self {
             composite: Composite::new(&system.tree),
             mass: vec![0.0; n * n],
@@ -38,7 +38,7 @@ impl MotionTerms {
 }
 
 impl System {
-    /// Writes the terms at a state. Loads that depend on reactions are left out, and so are Baumgarte's terms.
+    /// Writes the terms at a state. Loads that depend on reactions and prescribed motions are left out, and so are Baumgarte's terms.
     ///
     /// # Errors
     /// [`DynamicsError::Refused`] where a load has no meaning.

@@ -6,7 +6,7 @@ use crate::error::BuildError;
 use crate::linkage::{JointItem, Linkage, Mount};
 use crate::mechanism::{Contact, Mechanism, NamedJoint, NamedLink, NamedLoop};
 use crate::spring::{self, JointSprings};
-use linkdyn_dynamics::{Description, Load, ReactionLoad, System, SystemError};
+use linkdyn_dynamics::{Description, Guided, Load, ReactionLoad, System, SystemError};
 use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Tree};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ impl Linkage {
         let mut joints = Vec::new();
         let mut loads: Vec<Arc<dyn Load>> = Vec::new();
         let mut reaction_loads: Vec<(LinkId, Arc<dyn ReactionLoad>)> = Vec::new();
-        let mut springs = Vec::new();
+        let (mut springs, mut guided) = (Vec::new(), Vec::new());
         for (&index, &node) in placed.order.iter().zip(&placed.nodes) {
             let item = &self.joints[index];
             let (q, v) = (placed.tree.coordinate_range(node), placed.tree.speed_range(node));
@@ -40,6 +40,14 @@ impl Linkage {
                 speed: v.start + k,
                 spring,
             }));
+            if let Some(motion) = &item.prescribed {
+                guided.push(Guided {
+                    coordinate: q.start,
+                    speed: v.start,
+                    speed_only: motion.speed_only(),
+                    guide: Arc::new(motion.clone()),
+                });
+            }
             if let Some(friction) = &item.friction {
                 reaction_loads.push((node, Arc::new(friction.clone())));
             }
@@ -94,6 +102,7 @@ impl Linkage {
         let description = Description {
             inertias: inertias.collect(),
             closures,
+            guided,
             loads,
             reaction_loads,
             baumgarte: self.baumgarte,

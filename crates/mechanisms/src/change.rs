@@ -2,7 +2,7 @@
 //! [`Linkage::build`].
 
 use crate::clearance::Clearance;
-use crate::linkage::Linkage;
+use crate::linkage::{JointHandle, Linkage};
 use crate::spring::Spring;
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_friction::Friction;
@@ -12,6 +12,12 @@ impl Linkage {
     pub fn inertia_mut(&mut self, link: &str) -> Option<&mut RigidInertia> {
         let found = self.links.iter_mut().find(|(name, _)| name == link);
         found.map(|(_, inertia)| inertia)
+    }
+
+    /// Handle of a joint of the tree by its name; `None` for unknown names.
+    pub fn joint_named(&self, joint: &str) -> Option<JointHandle> {
+        let found = self.joints.iter().position(|item| item.name == joint);
+        found.map(JointHandle)
     }
 
     /// All springs with dampers, those of flexible links included.

@@ -3,6 +3,7 @@
 use crate::drive::Drive;
 use crate::error::BuildError;
 use crate::linkage::{CutItem, JointItem, Linkage};
+use crate::prescribed::PrescribedMotion;
 use crate::spring::Spring;
 use linkdyn_friction::{BearingModel, Characteristic};
 use linkdyn_kinematics::Joint;
@@ -47,7 +48,7 @@ impl Linkage {
         if self.foreign {
             return Err(BuildError::Foreign {
                 what: "the handle of a joint",
-                name: "drive, springs, friction, coordinate_names or clearance".into(),
+                name: "drive, springs, friction, prescribe, coordinate_names or clearance".into(),
             });
         }
         for (name, inertia) in &self.links {
@@ -128,6 +129,7 @@ impl JointItem {
         let needs_one = [
             (!self.drives.is_empty(), "a drive"),
             (self.friction.is_some(), "friction"),
+            (self.prescribed.is_some(), "a prescribed motion"),
         ];
         if let Some((_, what)) = needs_one.into_iter().find(|(there, _)| *there && coordinates != 1) {
             return Err(BuildError::NotOneCoordinate {
@@ -145,7 +147,8 @@ impl JointItem {
             });
         }
         let faults = self.drives.iter().filter_map(Drive::fault);
-        let mut faults = faults.chain(self.springs.iter().filter_map(Spring::fault));
+        let faults = faults.chain(self.springs.iter().filter_map(Spring::fault));
+        let mut faults = faults.chain(self.prescribed.iter().filter_map(PrescribedMotion::fault));
         if let Some((parameter, value, expected)) = faults.next() {
             return Err(BuildError::Parameter {
                 joint: joint(),

@@ -169,6 +169,20 @@ pub enum StartError {
         /// The names there are.
         known: String,
     },
+    /// A coordinate with prescribed motion is told to start elsewhere.
+    #[error(
+        "`{coordinate}` starts with {what} {given}, but its prescribed motion has {prescribed} at t = 0; leave it out of the start"
+    )]
+    Prescribed {
+        /// The coordinate.
+        coordinate: String,
+        /// Position or speed.
+        what: &'static str,
+        /// As given \[rad, m, rad/s, m/s\].
+        given: f64,
+        /// As prescribed.
+        prescribed: f64,
+    },
     /// The loops cannot be closed.
     #[error("start: {0}")]
     Assembly(#[from] AssemblyError),

@@ -3,6 +3,7 @@
 use crate::clearance::Clearance;
 use crate::drive::Drive;
 use crate::joint_friction::JointFriction;
+use crate::prescribed::PrescribedMotion;
 use crate::spring::Spring;
 use linkdyn_dynamics::{Baumgarte, Formulation, Load, ReactionSolver, RigidInertia};
 use linkdyn_friction::{Bearing, Friction};
@@ -88,6 +89,7 @@ pub(crate) struct JointItem {
     pub(crate) drives: Vec<Drive>,
     pub(crate) springs: Vec<Spring>,
     pub(crate) friction: Option<JointFriction>,
+    pub(crate) prescribed: Option<PrescribedMotion>,
 }
 
 #[derive(Clone, Debug)]
@@ -136,6 +138,7 @@ impl Linkage {
             drives: Vec::new(),
             springs: Vec::new(),
             friction: None,
+            prescribed: None,
         });
         JointHandle(self.joints.len() - 1)
     }
@@ -173,6 +176,13 @@ impl Linkage {
     /// Adds a drive or resistance to a joint with one coordinate; several add up.
     pub fn drive(&mut self, joint: JointHandle, drive: Drive) -> &mut Self {
         self.on(joint, |item| item.drives.push(drive));
+        self
+    }
+
+    /// Makes a joint with one coordinate follow a motion, whatever force or torque that takes; see
+    /// [`Mechanism::prescribed_names`](crate::Mechanism::prescribed_names).
+    pub fn prescribe(&mut self, joint: JointHandle, motion: PrescribedMotion) -> &mut Self {
+        self.on(joint, |item| item.prescribed = Some(motion));
         self
     }
 

@@ -109,6 +109,13 @@ impl Mechanism {
         self.loops.iter().map(|cut| cut.name.as_str())
     }
 
+    /// Names of the coordinates with prescribed motion, in the order of their multipliers, which stand behind those of the loops and are
+    /// the forces \[N\] or torques \[N m\] that the motions take.
+    pub fn prescribed_names(&self) -> impl Iterator<Item = &str> {
+        let guided = self.system.guided().iter();
+        guided.map(|guided| self.coordinates[guided.coordinate].as_str())
+    }
+
     /// Size of the force \[N\] in each cut joint by the multipliers of all loops; torques are left out.
     pub fn loop_forces(&self, multipliers: &[f64]) -> impl Iterator<Item = f64> {
         let mut rest = multipliers;
@@ -150,8 +157,11 @@ impl Mechanism {
         self.joints.iter().any(|joint| joint.has_friction)
     }
 
-    /// Which load has states, integrals or events of its own, if one has.
+    /// Which load has states, integrals or events of its own, or which coordinate a prescribed motion, if one has.
     pub(crate) fn stateful(&self) -> Option<String> {
+        if let Some(name) = self.prescribed_names().next() {
+            return Some(format!("coordinate `{name}` has a prescribed motion"));
+        }
         if self.system.internals().is_empty() {
             return None;
         }
@@ -173,7 +183,8 @@ impl Mechanism {
         self.links.iter().find(|l| l.name == link).and_then(|l| l.frame)
     }
 
-    /// Closes the loops from a guess, joints with clearance centred; see [`assembly::assemble`].
+    /// Closes the loops from a guess, joints with clearance centred and prescribed coordinates where they are at t = 0; see
+    /// [`assembly::assemble`].
     ///
     /// # Errors
     /// [`StartError`] for unknown names and where the loops cannot be closed with what is held.
@@ -187,16 +198,47 @@ impl Mechanism {
         for name in &start.held {
             held[self.speed(name)?] = true;
         }
+        for guided in self.system.guided().iter().filter(|guided| !guided.speed_only) {
+            (q[guided.coordinate], held[guided.speed]) = (guided.guide.at(0.0)[0], true);
+        }
         let mut v = vec![0.0; tree.speeds()];
         let mut given = held.clone();
         for (name, value) in &start.speeds {
             let speed = self.speed(name)?;
             (v[speed], given[speed]) = (*value, true);
         }
+        for guided in self.system.guided() {
+            (v[guided.speed], given[guided.speed]) = (guided.guide.at(0.0)[1], true);
+        }
+        self.check_prescribed(start, &q, &v)?;
         let closed = assembly::assemble(tree, &self.centred, &q, &held, &Settings::default())?;
         let v = assembly::consistent_velocities(tree, &self.centred, &closed.q, &v, &given)?;
         let state = State { q: closed.q.clone(), v };
         Ok((state, closed))
+    }
+
+    /// A start must not say of a prescribed coordinate what its motion does not.
+    fn check_prescribed(&self, start: &Start, q: &[f64], v: &[f64]) -> Result<(), StartError> {
+        for guided in self.system.guided() {
+            let name = &self.coordinates[guided.coordinate];
+            let told = |list: &[(String, f64)]| list.iter().find(|(told, _)| told == name).map(|(_, value)| *value);
+            let position = told(&start.positions).filter(|_| !guided.speed_only);
+            let pairs = [
+                ("position", position, q[guided.coordinate]),
+                ("speed", told(&start.speeds), v[guided.speed]),
+            ];
+            for (what, given, prescribed) in pairs {
+                if given.is_some_and(|given| (given - prescribed).abs() > 1e-9 * prescribed.abs().max(1.0)) {
+                    return Err(StartError::Prescribed {
+                        coordinate: name.clone(),
+                        what,
+                        given: given.unwrap_or(f64::NAN),
+                        prescribed,
+                    });
+                }
+            }
+        }
+        Ok(())
     }
 
     pub(crate) fn index(&self, name: &str) -> Result<usize, StartError> {

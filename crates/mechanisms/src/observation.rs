@@ -18,7 +18,7 @@ pub struct Observation {
     pub v: Vec<f64>,
     /// Rates of the speeds.
     pub a: Vec<f64>,
-    /// Multipliers of all loops.
+    /// Multipliers of all loops, then of the prescribed motions.
     pub multipliers: Vec<f64>,
     /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link.
     pub reactions: Vec<Reaction>,
@@ -49,7 +49,7 @@ impl Simulation {
         let system = &self.mechanism.system;
         let at = self.layout.instant(t, y, self.memory.at(t));
         let o = observation;
-        o.violation = system.violation(at.q, at.v, &mut self.work);
+        o.violation = system.violation(at.t, at.q, at.v, &mut self.work);
         let evaluated = system.evaluate_with(&at, &mut self.work);
         evaluated.map_err(|cause| self.mechanism.explain(cause))?;
         system.reactions(&mut self.work);
@@ -115,6 +115,7 @@ impl Simulation {
         for cut in &mechanism.loops {
             names.extend(cut.components.iter().map(|c| format!("lambda.{}.{c}", cut.name)));
         }
+        names.extend(mechanism.prescribed_names().map(|name| format!("lambda.{name}.drive")));
         if with_reactions {
             for joint in &mechanism.joints {
                 names.extend(["fx", "fy", "fz", "nx", "ny", "nz"].map(|c| format!("reaction.{}.{c}", joint.name)));
@@ -127,7 +128,7 @@ impl Simulation {
             }
         }
         names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
-        if !mechanism.loops.is_empty() {
+        if mechanism.system.equations() > 0 {
             names.extend(["position", "velocity"].map(|c| format!("violation.{c}")));
         }
         names

@@ -256,7 +256,7 @@ impl Rows {
         observer: &mut impl FnMut(Seen<'_>) -> ControlFlow<()>,
     ) -> Result<(), RunError> {
         if t > self.start {
-            simulation.put_on_closures(&mut self.y);
+            simulation.put_on_closures(t, &mut self.y);
         }
         simulation.observe(t, &self.y, &mut self.observation)?;
         stop_if(observer(Seen::Row(&self.observation)), t)

@@ -114,7 +114,7 @@ impl Simulation {
     pub fn new(mechanism: &Mechanism) -> Self {
         let system = mechanism.system();
         let conservative = system.loads().iter().all(|load| load.is_conservative());
-        let has_work = !conservative || mechanism.has_friction();
+        let has_work = !conservative || mechanism.has_friction() || !system.guided().is_empty();
         let (tree, internals) = (system.tree(), system.internals());
         let layout = Layout::new([
             tree.coordinates(),
@@ -232,9 +232,9 @@ impl Simulation {
         Ok(self.work.rates())
     }
 
-    /// Puts a state vector back onto the closures.
-    pub fn put_on_closures(&mut self, y: &mut [f64]) -> Drift {
-        self.project_by(System::project, y)
+    /// Puts a state vector back onto closures and prescribed motions at time `t` \[s\].
+    pub fn put_on_closures(&mut self, t: f64, y: &mut [f64]) -> Drift {
+        self.project_by(|system, q, v, work| system.project(t, q, v, work), y)
     }
 
     fn project_by(
@@ -320,9 +320,9 @@ impl Ode for Simulation {
         Ok(())
     }
 
-    fn project(&mut self, _t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
+    fn project(&mut self, t: f64, y: &mut [f64]) -> Result<bool, EvalError> {
         let tolerance = self.drift_tolerance;
-        let drift = self.project_by(|system, q, v, work| system.project_beyond(tolerance, q, v, work), y);
+        let drift = self.project_by(|system, q, v, work| system.project_beyond(t, tolerance, q, v, work), y);
         if drift.remaining > OFF_THE_LOOP {
             return Err(EvalError::Retry(Box::new(OffTheLoop(drift.remaining))));
         }

@@ -71,21 +71,47 @@ impl Spline {
 
     /// Value at `x`.
     pub fn value(&self, x: f64) -> f64 {
+        self.with_derivatives(x)[0]
+    }
+
+    /// Value, first and second derivative at `x`.
+    pub fn with_derivatives(&self, x: f64) -> [f64; 3] {
         let behind = self.x.partition_point(|node| *node <= x);
         if behind == 0 || behind == self.x.len() {
             let end = if behind == 0 { self.y.first() } else { self.y.last() };
-            return if x.is_nan() {
+            let value = if x.is_nan() {
                 x
             } else {
                 end.copied().unwrap_or(f64::NAN)
             };
+            return [value, 0.0, 0.0];
         }
         let k = behind - 1;
         let h = self.x[behind] - self.x[k];
         let s = (x - self.x[k]) / h;
         let (m0, m1) = (h * self.slopes[k], h * self.slopes[behind]);
         let rise = self.y[behind] - self.y[k];
-        self.y[k] + s * (m0 + s * (3.0 * rise - 2.0 * m0 - m1 + s * (m0 + m1 - 2.0 * rise)))
+        let (second, third) = (3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise);
+        [
+            self.y[k] + s * (m0 + s * (second + s * third)),
+            (m0 + s * (2.0 * second + s * 3.0 * third)) / h,
+            (2.0 * second + s * 6.0 * third) / (h * h),
+        ]
+    }
+
+    /// As [`Self::with_derivatives`], but a straight line before the first and behind the last node.
+    pub fn straight_on(&self, x: f64) -> [f64; 3] {
+        let ends = [0, self.x.len().saturating_sub(1)];
+        match (self.x.first(), self.x.last()) {
+            (Some(first), _) if x < *first => self.line(ends[0], x),
+            (_, Some(last)) if x >= *last => self.line(ends[1], x),
+            _ => self.with_derivatives(x),
+        }
+    }
+
+    fn line(&self, node: usize, x: f64) -> [f64; 3] {
+        let slope = self.slopes[node];
+        [self.y[node] + slope * (x - self.x[node]), slope, 0.0]
     }
 
     /// Where steps have to end: at all nodes, for the third derivative of a natural spline jumps there too, and a step of high order

@@ -151,7 +151,7 @@ fn eigenvalues(simulation: &mut Simulation, sample: &Sample) -> Result<Vec<Compl
         for (rates, delta) in rates.iter_mut().zip([delta, -delta]) {
             let mut y = sample.y.clone();
             y[j] += delta;
-            simulation.put_on_closures(&mut y);
+            simulation.put_on_closures(sample.t, &mut y);
             simulation.rhs(sample.t, &y, rates).map_err(|error| error.to_string())?;
         }
         for i in 0..count {

@@ -105,6 +105,8 @@ pub struct JointItem {
     pub springs: Vec<SpringItem>,
     /// Friction in a revolute joint.
     pub friction: Option<FrictionItem>,
+    /// Motion that its one coordinate is made to follow.
+    pub prescribed: Option<PrescribedItem>,
 }
 
 /// Kinds of joints.
@@ -205,6 +207,40 @@ pub enum DriveItem {
         torque: f64,
         /// Reference speed \[rad/s, m/s\].
         reference_speed: f64,
+    },
+}
+
+/// A prescribed motion.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+pub enum PrescribedItem {
+    /// `c_0 + c_1 t + c_2 t^2 + ...`
+    Polynomial {
+        /// Coefficients, the constant first \[rad, m and per s to the power\].
+        coefficients: Vec<f64>,
+    },
+    /// `mean + amplitude * sin(2 pi frequency t + phase)`.
+    Harmonic {
+        /// Middle position \[rad, m\]; zero unless given.
+        #[serde(default)]
+        mean: Quantity,
+        /// Amplitude \[rad, m\].
+        amplitude: Quantity,
+        /// Frequency \[Hz\].
+        frequency: f64,
+        /// Phase at t = 0 \[rad\]; zero unless given.
+        #[serde(default)]
+        phase: Quantity,
+    },
+    /// A natural spline through positions over time, straight on before the first and behind the last.
+    Table {
+        /// Time \[s\] and position \[rad, m\] of each point, times rising.
+        points: Vec<[f64; 2]>,
+    },
+    /// A natural spline through speeds over time, constant before the first and behind the last; from wherever the joint starts.
+    Speeds {
+        /// Time \[s\] and speed \[rad/s, m/s\] of each point, times rising.
+        points: Vec<[f64; 2]>,
     },
 }
 

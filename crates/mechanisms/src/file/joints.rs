@@ -1,9 +1,10 @@
 //! The joints of a scene file, and what sits in them.
 
 use super::fault::{Faults, nearest};
-use super::format::{DriveItem, FrictionItem, JointItem, Kind, MountItem, SceneFile, SurfaceItem};
+use super::format::{DriveItem, FrictionItem, JointItem, Kind, MountItem, PrescribedItem, SceneFile, SurfaceItem};
 use crate::drive::Drive;
 use crate::linkage::{LinkHandle, Linkage, Mount};
+use crate::prescribed::PrescribedMotion;
 use crate::spanning::{Edge, Role, spanning_tree};
 use crate::spline::Spline;
 use crate::spring::Spring;
@@ -78,6 +79,7 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
         (!item.springs.is_empty(), "springs"),
         (item.friction.is_some(), "friction"),
         (item.coordinates.is_some(), "coordinates"),
+        (item.prescribed.is_some(), "prescribed"),
     ];
     there.into_iter().find_map(|(there, key)| there.then_some(key))
 }
@@ -260,6 +262,14 @@ fn carry(name: &str, item: &JointItem, parts: (Joint, Mount, Mount), linkage: &m
     if !springs.is_empty() {
         linkage.springs(joint, &springs);
     }
+    if let Some(item) = &item.prescribed {
+        let motion = prescribed(item);
+        if let Some((parameter, value, expected)) = motion.fault() {
+            let message = format!("{parameter} = {value} must be {expected}");
+            faults.add(&["joints", name, "prescribed"], message);
+        }
+        linkage.prescribe(joint, motion);
+    }
     if let Some(item) = &item.friction {
         let (characteristic, bearing) = friction(item);
         if let Err(error) = characteristic.validate().and_then(|()| bearing.validate()) {
@@ -303,6 +313,28 @@ fn drive(item: &DriveItem) -> Drive {
             torque,
             reference_speed,
         },
+    }
+}
+
+fn prescribed(item: &PrescribedItem) -> PrescribedMotion {
+    let spline = |points: &[[f64; 2]]| Spline::natural(&points.iter().map(|&[t, x]| (t, x)).collect::<Vec<_>>());
+    match item {
+        PrescribedItem::Polynomial { coefficients } => PrescribedMotion::Polynomial {
+            coefficients: coefficients.clone(),
+        },
+        PrescribedItem::Harmonic {
+            mean,
+            amplitude,
+            frequency,
+            phase,
+        } => PrescribedMotion::Harmonic {
+            mean: mean.0,
+            amplitude: amplitude.0,
+            frequency: *frequency,
+            phase: phase.0,
+        },
+        PrescribedItem::Table { points } => PrescribedMotion::Table { spline: spline(points) },
+        PrescribedItem::Speeds { points } => PrescribedMotion::Speeds { spline: spline(points) },
     }
 }
 
