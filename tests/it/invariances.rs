@@ -1,7 +1,7 @@
 //! The same machine described differently moves the same.
 
 use linkdyn_dynamics::{Formulation, lagrange};
-use linkdyn_kinematics::{Custom, Joint, JointStep, Pose, Row, Wrench};
+use linkdyn_kinematics::{Joint, Pose, Wrench};
 use linkdyn_tests::numbers::{condition, difference};
 use linkdyn_tests::{Blueprint, Cut, Part, strategies};
 use nalgebra::{Matrix3, Unit, Vector3};
@@ -96,35 +96,6 @@ fn mirrored(blueprint: &Blueprint) -> Blueprint {
             axis: turn(axis),
             pitch: -pitch,
         },
-        Joint::Custom(custom) => {
-            let step = |step| match step {
-                JointStep::Turn { axis } => JointStep::Turn { axis: turn(&axis) },
-                JointStep::Slide { axis } => JointStep::Slide { axis: slide(&axis) },
-                JointStep::Screw { axis, pitch } => JointStep::Screw {
-                    axis: turn(&axis),
-                    pitch: -pitch,
-                },
-            };
-            let row = |row| match row {
-                Row::Along { axis } => Row::Along { axis: mirror * axis },
-                Row::Angle {
-                    on_predecessor,
-                    on_successor,
-                    cosine,
-                } => Row::Angle {
-                    on_predecessor: mirror * on_predecessor,
-                    on_successor: mirror * on_successor,
-                    cosine,
-                },
-                Row::Screw { axis, pitch } => Row::Screw {
-                    axis: mirror * axis,
-                    pitch: -pitch,
-                },
-                Row::Coincident => Row::Coincident,
-            };
-            let steps: Vec<JointStep> = custom.steps().map(step).collect();
-            Joint::Custom(Custom::new(&steps, &custom.rows().map(row).collect::<Vec<_>>()))
-        }
         Joint::Cylindrical { axis } => Joint::Cylindrical { axis: slide(axis) },
         Joint::Universal { first, second } => Joint::Universal {
             first: turn(first),

@@ -1,9 +1,9 @@
 //! A body with an arm, on the ground by each kind of joint, moves as the same body that is free but for the joint's cut form.
 
-use linkdyn_kinematics::{Attachment, Closure, Custom, Joint, JointStep, LinkId, Pose, Positions, Row, Tree};
+use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Positions, Row, Tree};
 use linkdyn_mechanisms::dynamics::RigidInertia;
 use linkdyn_mechanisms::integrators::{Dop853, Integration, Settings};
-use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Simulation, Start, run};
+use linkdyn_mechanisms::{Drive, Linkage, Mechanism, Mount, Simulation, Start, run};
 use linkdyn_tests::strategies;
 use nalgebra::{DMatrix, Matrix3, Unit, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -46,14 +46,6 @@ fn kinds() -> Vec<Joint> {
     let axis = Unit::new_normalize(Vector3::new(0.3, -0.4, 0.8));
     let across = Unit::new_normalize(axis.cross(&Vector3::x()));
     let skew = Unit::new_normalize(Vector3::new(0.9, 0.2, -0.3));
-    let freedoms = [JointStep::Slide { axis: across }, JointStep::Turn { axis }];
-    let third = axis.cross(&across);
-    let along = [*axis, third].map(|axis| Row::Along { axis });
-    let angles = [*across, third].map(|on_predecessor| Row::Angle {
-        on_predecessor,
-        on_successor: *axis,
-        cosine: 0.0,
-    });
     vec![
         Joint::Fixed,
         Joint::Revolute { axis },
@@ -71,7 +63,6 @@ fn kinds() -> Vec<Joint> {
             normal: axis,
         },
         Joint::Free,
-        Joint::Custom(Custom::new(&freedoms, &[along, angles].concat())),
     ]
 }
 
@@ -184,20 +175,67 @@ fn a_nut_on_a_screw_falls_as_the_closed_form_says() {
     }
 }
 
+/// A joint that has no name of its own, a slide with a turn about an axis across it: carried as a chain, cut by equations.
 #[test]
-fn a_custom_joint_without_equations_cannot_be_cut() {
-    let step = JointStep::Turn {
-        axis: Vector3::x_axis(),
+fn a_joint_of_ones_own_moves_as_its_own_equations_say() {
+    let (slide, turn) = (Vector3::x_axis(), Vector3::y_axis());
+    let across = Vector3::z();
+    let along = [turn.into_inner(), across].map(|axis| Row::Along { axis });
+    let angles = [slide.into_inner(), across].map(|on_predecessor| Row::Angle {
+        on_predecessor,
+        on_successor: turn.into_inner(),
+        cosine: 0.0,
+    });
+    let mechanism = |cut: bool| {
+        let mut m = Linkage::new([2.0, -3.0, 1.0]);
+        let body = m.link("body", own_inertia());
+        let base = Pose::turn(Unit::new_normalize(Vector3::new(0.9, 0.2, -0.3)), 0.4);
+        let (on_ground, on_body) = (Mount::with_pose(Linkage::GROUND, base), Mount::at_origin(body));
+        let steps = [Joint::Prismatic { axis: slide }, Joint::Revolute { axis: turn }];
+        if cut {
+            m.joint("free", Joint::Free, on_ground, on_body);
+            m.cut_rows("own", &[along, angles].concat(), on_ground, on_body);
+        } else {
+            let handles = m.chain("own", &steps, on_ground, on_body);
+            m.drive(handles[0], Drive::Constant { torque: 0.0 });
+        }
+        let arm = m.link("arm", own_inertia());
+        let elbow = Mount::at(body, [0.3, 0.1, 0.0]);
+        m.joint("elbow", Joint::revolute_z(), elbow, Mount::at_origin(arm));
+        m.build().expect("sound")
     };
-    let mut m = Linkage::new([0.0; 3]);
-    let body = m.link("body", own_inertia());
-    let (ground, body) = (Mount::at_origin(Linkage::GROUND), Mount::at_origin(body));
-    m.joint("carrier", Joint::Free, ground, body);
-    m.cut("loop", Joint::Custom(Custom::new(&[step], &[])), ground, body);
-    let error = m.build().expect_err("no equations").to_string();
-    assert!(error.contains("`loop`") && error.contains("no equations"), "{error}");
-    let too_many = Custom::new(&[step; 7], &[]);
-    assert!(Joint::Custom(too_many).validate().is_err());
-    let not_six = Custom::new(&[step; 2], &[Row::Coincident]);
-    assert!(Joint::Custom(not_six).validate().is_err());
+    let carried = mechanism(false);
+    let names: Vec<_> = carried.coordinate_names().collect();
+    assert_eq!(names, ["own.1", "own.2", "elbow"]);
+    let (carried, cut) = (after_a_second(&carried), after_a_second(&mechanism(true)));
+    let gap = (carried.rotation - cut.rotation)
+        .amax()
+        .max((carried.origin - cut.origin).amax());
+    assert!(gap < 1e-9, "{gap:e}");
+}
+
+#[test]
+fn chains_and_equations_that_make_no_joint_are_refused() {
+    let refusal = |change: fn(&mut Linkage, Mount, Mount)| {
+        let mut m = Linkage::new([0.0; 3]);
+        let body = m.link("body", own_inertia());
+        change(&mut m, Mount::at_origin(Linkage::GROUND), Mount::at_origin(body));
+        m.build().expect_err("no joint").to_string()
+    };
+    let error = refusal(|m, ground, body| {
+        m.chain("own", &[], ground, body);
+    });
+    assert!(error.contains("`body`"), "{error}");
+    let error = refusal(|m, ground, body| {
+        m.joint("free", Joint::Free, ground, body);
+        m.cut_rows(
+            "loop",
+            &[Row::Along {
+                axis: Vector3::new(0.0, 0.0, 2.0),
+            }],
+            ground,
+            body,
+        );
+    });
+    assert!(error.contains("`loop`") && error.contains("unit"), "{error}");
 }

@@ -2,7 +2,7 @@
 
 use crate::blueprint::{Blueprint, Cut, Part};
 use linkdyn_dynamics::RigidInertia;
-use linkdyn_kinematics::{Custom, Joint, JointStep, Pose, Row, Wrench};
+use linkdyn_kinematics::{Joint, Pose, Wrench};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -57,7 +57,6 @@ pub fn moving_joint() -> impl Strategy<Value = Joint> {
         1 => direction().prop_map(|axis| Joint::Cylindrical { axis }),
         1 => universal(),
         1 => screw(),
-        1 => custom(),
         1 => Just(Joint::SphericalZyx),
         1 => Just(Joint::Spherical),
         1 => planar(),
@@ -75,23 +74,6 @@ fn screw() -> impl Strategy<Value = Joint> {
     (direction(), 0.05..0.3, any::<bool>()).prop_map(|(axis, pitch, right)| Joint::Screw {
         axis,
         pitch: if right { pitch } else { -pitch },
-    })
-}
-
-/// A joint of no kind that has a name: a slide, then a turn about another axis at right angles. As a cut: nothing moves across the
-/// slide, and the turn's axis stays where it is.
-fn custom() -> impl Strategy<Value = Joint> {
-    (direction(), number(PI)).prop_map(|(slide, turn)| {
-        let axis = Unit::new_normalize(Pose::turn(slide, turn).rotation * slide.cross(&off(&slide)));
-        let across = slide.cross(&axis);
-        let along = [axis.into_inner(), across].map(|axis| Row::Along { axis });
-        let angles = [slide.into_inner(), across].map(|on_predecessor| Row::Angle {
-            on_predecessor,
-            on_successor: axis.into_inner(),
-            cosine: 0.0,
-        });
-        let freedoms = [JointStep::Slide { axis: slide }, JointStep::Turn { axis }];
-        Joint::Custom(Custom::new(&freedoms, &[along, angles].concat()))
     })
 }
 
@@ -135,7 +117,6 @@ pub fn coordinates(joint: &Joint, raw: &Raw) -> Vec<f64> {
     match joint {
         Joint::Fixed => vec![],
         Joint::Revolute { .. } | Joint::Screw { .. } => vec![PI * a],
-        Joint::Custom(_) => vec![0.5 * a, PI * b],
         Joint::Prismatic { .. } => vec![0.5 * a],
         Joint::Cylindrical { .. } => vec![0.5 * a, PI * b],
         Joint::Universal { .. } => vec![PI * a, PI * b],

@@ -59,6 +59,21 @@ pub enum Row {
 }
 
 impl Row {
+    /// Whether all axes are finite unit vectors, and all other numbers finite.
+    pub fn is_sound(&self) -> bool {
+        let unit = |axis: &Vector3<f64>| (axis.norm() - 1.0).abs() < 1e-9;
+        match self {
+            Row::Coincident => true,
+            Row::Along { axis } => unit(axis),
+            Row::Screw { axis, pitch } => unit(axis) && pitch.is_finite(),
+            Row::Angle {
+                on_predecessor,
+                on_successor,
+                cosine,
+            } => unit(on_predecessor) && unit(on_successor) && cosine.is_finite(),
+        }
+    }
+
     /// Number of equations.
     pub fn equations(&self) -> usize {
         match self {
@@ -114,7 +129,7 @@ impl Ends {
 
 impl Closure {
     /// Cuts `joint` between two frames. The joint's axes are those of the predecessor frame, as for
-    /// [`Tree::attach`]; at zero joint coordinates both frames coincide. A joint of one's own has the equations that it brings.
+    /// [`Tree::attach`]; at zero joint coordinates both frames coincide.
     ///
     /// # Panics
     /// If a link is not of this tree.
@@ -535,7 +550,6 @@ fn rows_of(joint: &Joint) -> Vec<Row> {
             let (axis, pitch) = (**axis, *pitch);
             rows.push(Row::Screw { axis, pitch });
         }
-        Joint::Custom(custom) => rows.extend(custom.rows()),
         Joint::Free => {}
     }
     rows

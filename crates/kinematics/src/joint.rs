@@ -4,7 +4,7 @@
 //! freedom each (a turn about an axis, a slide along one); between the steps of one joint there is nothing. The
 //! recursions then know two kinds of freedom and no kinds of joints, and a new joint is a new list of steps.
 
-use crate::{Custom, Pose, TreeError};
+use crate::{Pose, TreeError};
 use nalgebra::{Matrix3, Unit, Vector3};
 
 /// A joint between two links. Axes are unit vectors in the joint's frame on the predecessor.
@@ -58,8 +58,6 @@ pub enum Joint {
     /// Nothing is held: slides \[m\] along x, y and z of the predecessor, then a turn as of [`Joint::Spherical`]. As a cut it
     /// has no equations.
     Free,
-    /// Freedoms and equations of one's own choice.
-    Custom(Custom),
 }
 
 impl Joint {
@@ -103,7 +101,6 @@ impl Joint {
             Joint::Spherical => &["w", "x", "y", "z"],
             Joint::Planar { .. } => &["x", "y", "psi"],
             Joint::Free => &["x", "y", "z", "qw", "qx", "qy", "qz"],
-            Joint::Custom(_) => &["q1", "q2", "q3", "q4", "q5", "q6"][..self.speeds()],
         }
     }
 
@@ -139,14 +136,12 @@ impl Joint {
                 [slide(along), slide(across), turn(normal), none, none, none]
             }
             Joint::Free => [slide(x), slide(y), slide(z), ball(0), ball(1), ball(2)],
-            Joint::Custom(custom) => custom.chain(),
         };
         list.into_iter().flatten()
     }
 
     /// Checks that every axis of the joint is a finite unit vector and a pitch finite, that those of a universal joint are not
-    /// parallel, and that those of a planar joint are at right angles; and that a joint of one's own has one to six
-    /// freedoms, and equations for all others or none.
+    /// parallel, and that those of a planar joint are at right angles.
     ///
     /// # Errors
     /// [`TreeError::BadAxis`]. [`crate::Tree::attach`] checks by itself, [`crate::Closure::new`] trusts its caller.
@@ -157,7 +152,6 @@ impl Joint {
             Joint::Screw { axis, pitch } => unit(axis) && pitch.is_finite(),
             Joint::Universal { first, second } => unit(first) && unit(second) && first.cross(second).norm() > 1e-6,
             Joint::Planar { along, normal } => unit(along) && unit(normal) && along.dot(normal).abs() < 1e-9,
-            Joint::Custom(custom) => custom.is_sound(unit),
             Joint::Fixed | Joint::SphericalZyx | Joint::Spherical | Joint::Free => true,
         };
         if sound {

@@ -2,7 +2,6 @@
 
 pub mod assembly;
 mod closure;
-mod custom;
 mod derivatives;
 pub mod dh;
 mod jacobian;
@@ -15,7 +14,6 @@ mod tree;
 mod turned;
 
 pub use closure::{Attachment, Closure, Ends, Row};
-pub use custom::{Custom, JointStep};
 pub use derivatives::Transforms;
 pub use joint::Joint;
 pub use motion::{Accelerations, NodePosition, Positions, Velocities};

@@ -125,9 +125,9 @@ pub enum TreeError {
         defect: f64,
     },
     /// A joint axis is not a unit vector, a pitch not finite, the two axes of a universal joint are parallel, or those of a planar joint not at
-    /// right angles, or a joint of one's own has freedoms and equations that do not make six.
+    /// right angles.
     #[error(
-        "axes of joint {joint:?} must be finite unit vectors, those of a universal joint not parallel, those of a planar joint at right angles, pitches finite, and a custom joint needs one to six freedoms with equations for all others or none"
+        "axes of joint {joint:?} must be finite unit vectors, those of a universal joint not parallel, those of a planar joint at right angles and pitches finite"
     )]
     BadAxis {
         /// The joint.

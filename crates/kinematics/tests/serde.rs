@@ -1,6 +1,6 @@
 //! File form of poses, joints and Denavit-Hartenberg tables.
 
-use linkdyn_kinematics::{Custom, Joint, JointStep, Pose, Row, Tree, TreeError, dh};
+use linkdyn_kinematics::{Joint, Pose, Tree, TreeError, dh};
 use nalgebra::Vector3;
 use serde_json::{from_str, json, to_string, to_value};
 
@@ -37,7 +37,6 @@ fn joints_come_back() {
         },
         Joint::Free,
         Joint::Screw { axis, pitch: 0.01 },
-        Joint::Custom(Custom::new(&[JointStep::Turn { axis }], &[Row::Coincident])),
     ];
     for joint in joints {
         assert_eq!(from_str::<Joint>(&to_string(&joint).unwrap()).unwrap(), joint);

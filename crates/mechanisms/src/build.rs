@@ -68,7 +68,10 @@ impl Linkage {
         let mut contacts = Vec::new();
         for cut in &self.cuts {
             let (one, two) = (placed.attachment(&cut.predecessor), placed.attachment(&cut.successor));
-            let ideal = Closure::new(&placed.tree, one, two, &cut.joint);
+            let ideal = match &cut.rows {
+                None => Closure::new(&placed.tree, one, two, &cut.joint),
+                Some(rows) => Closure::with_rows(&placed.tree, one, two, rows.clone()),
+            };
             match (&cut.clearance, &cut.joint) {
                 (Some(clearance), Joint::Revolute { axis }) => {
                     let joint = Arc::new(ClearanceJoint::new(&cut.name, clearance, &ideal, **axis));

@@ -95,11 +95,9 @@ impl Linkage {
 
 impl CutItem {
     fn check(&self) -> Result<(), BuildError> {
-        if let Joint::Custom(custom) = &self.joint
-            && !custom.can_be_cut()
-        {
+        if let Some(row) = self.rows.iter().flatten().position(|row| !row.is_sound()) {
             let joint = self.name.clone();
-            return Err(BuildError::NoEquations { joint });
+            return Err(BuildError::Row { joint, row });
         }
         let Some(clearance) = &self.clearance else {
             return Ok(());

@@ -87,13 +87,13 @@ pub enum BuildError {
         /// Names.
         found: usize,
     },
-    /// A cut joint of one's own has no equations.
-    #[error(
-        "custom joint `{joint}` is cut, but brings no equations; give it those of what it holds, or let it carry a link"
-    )]
-    NoEquations {
+    /// An equation of a cut joint of one's own has an axis that is none.
+    #[error("cut joint `{joint}`: equation {row} must have finite numbers and unit vectors as axes")]
+    Row {
         /// The cut joint.
         joint: String,
+        /// Index of the equation.
+        row: usize,
     },
     /// Clearance is for revolute joints.
     #[error("cut joint `{joint}` has clearance, but is no revolute joint")]

@@ -7,7 +7,7 @@ use crate::prescribed::PrescribedMotion;
 use crate::spring::Spring;
 use linkdyn_dynamics::{Baumgarte, Formulation, Load, ReactionSolver, RigidInertia};
 use linkdyn_friction::{Bearing, Friction};
-use linkdyn_kinematics::{Joint, Pose};
+use linkdyn_kinematics::{Joint, Pose, Row};
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::sync::Arc;
 
@@ -100,6 +100,8 @@ pub(crate) struct CutItem {
     pub(crate) predecessor: Mount,
     pub(crate) successor: Mount,
     pub(crate) clearance: Option<Clearance>,
+    /// Equations of one's own, in place of the joint's.
+    pub(crate) rows: Option<Vec<Row>>,
 }
 
 impl Linkage {
@@ -143,6 +145,30 @@ impl Linkage {
         JointHandle(self.joints.len() - 1)
     }
 
+    /// Adds a joint of one's own: joints one after the other, all at the same place, with links without mass between them. They are named
+    /// `NAME.1` and so on, and each takes drives, springs, friction and the like as any other. Without joints the successor is not carried.
+    pub fn chain(&mut self, name: &str, joints: &[Joint], predecessor: Mount, successor: Mount) -> Vec<JointHandle> {
+        let mut before = predecessor;
+        let last = joints.len().saturating_sub(1);
+        let hang = |(k, joint): (usize, &Joint)| {
+            let name = format!("{name}.{}", k + 1);
+            let behind = if k == last {
+                successor
+            } else {
+                Mount::at_origin(self.link(&name, RigidInertia::massless()))
+            };
+            self.joint(&name, *joint, std::mem::replace(&mut before, behind), behind)
+        };
+        joints.iter().enumerate().map(hang).collect()
+    }
+
+    /// Adds a cut joint of one's own by the equations that it keeps.
+    pub fn cut_rows(&mut self, name: &str, rows: &[Row], predecessor: Mount, successor: Mount) -> CutHandle {
+        let handle = self.cut(name, Joint::Free, predecessor, successor);
+        self.cuts[handle.0].rows = Some(rows.to_vec());
+        handle
+    }
+
     /// Adds a cut joint: it closes a loop by equations, its multipliers act with + on the predecessor.
     pub fn cut(&mut self, name: &str, joint: Joint, predecessor: Mount, successor: Mount) -> CutHandle {
         self.cuts.push(CutItem {
@@ -151,6 +177,7 @@ impl Linkage {
             predecessor,
             successor,
             clearance: None,
+            rows: None,
         });
         CutHandle(self.cuts.len() - 1)
     }

@@ -26,7 +26,11 @@ impl Linkage {
         }
         for cut in &self.cuts {
             let (one, two) = (self.link_name(cut.predecessor.link), self.link_name(cut.successor.link));
-            let _ = writeln!(text, "cut: {one} - {} ({}) - {two}", cut.name, kind(&cut.joint));
+            let kind = match cut.rows {
+                None => kind(&cut.joint),
+                Some(_) => "its own equations",
+            };
+            let _ = writeln!(text, "cut: {one} - {} ({kind}) - {two}", cut.name);
         }
         text
     }
@@ -44,6 +48,5 @@ fn kind(joint: &Joint) -> &'static str {
         Joint::Planar { .. } => "planar",
         Joint::Free => "free",
         Joint::Screw { .. } => "screw",
-        Joint::Custom(_) => "custom",
     }
 }
