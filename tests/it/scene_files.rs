@@ -1,9 +1,10 @@
 //! Scene files against closed forms and against the same linkages in Rust.
 
 use linkdyn_integrators::Auto;
+use linkdyn_kinematics::Positions;
 use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
 use linkdyn_mechanisms::{Edge, Observation, Role, Scene, file, spanning_tree};
-use linkdyn_tests::scenes::{prepare, simulate};
+use linkdyn_tests::scenes::{Ready, prepare, simulate};
 
 const FOUR_BAR: &str = include_str!("../../crates/mechanisms/scenes/four_bar.toml");
 const RSRRR: &str = include_str!("../../crates/mechanisms/scenes/rsrrr.toml");
@@ -67,14 +68,18 @@ fn rsrrr_as_a_file_is_the_same_linkage_to_the_bit() {
     }
 }
 
-#[test]
-fn joints_with_many_freedoms_are_cut_unless_told() {
-    let edge = |predecessor, successor, freedoms, cut| Edge {
+fn edge(predecessor: Option<usize>, successor: Option<usize>, freedoms: usize, cut: Option<bool>) -> Edge {
+    Edge {
         predecessor,
         successor,
         freedoms,
         cut,
-    };
+        backwards: freedoms < 3,
+    }
+}
+
+#[test]
+fn joints_with_many_freedoms_are_cut_unless_told() {
     let loop_of = |cut| {
         [
             edge(None, Some(0), 1, None),
@@ -86,4 +91,63 @@ fn joints_with_many_freedoms_are_cut_unless_told() {
     assert_eq!(roles, [Role::Carries, Role::Cut, Role::CarriesBackwards]);
     let roles = spanning_tree(2, &loop_of(Some(false)));
     assert_eq!(roles, [Role::Carries, Role::Carries, Role::Cut]);
+}
+
+#[test]
+fn joints_that_cannot_carry_backwards_do_so_only_where_there_is_no_other_way() {
+    // Link 1 hangs between two balls, both of which have it for their predecessor: neither can carry it.
+    let open = [edge(None, Some(0), 1, None), edge(Some(1), Some(0), 3, None)];
+    assert_eq!(spanning_tree(2, &open), [Role::Carries, Role::CarriesBackwards]);
+    // Another joint can, though it has more freedoms.
+    let closed = [open[0], open[1], edge(None, Some(1), 6, None)];
+    assert_eq!(spanning_tree(2, &closed), [Role::Carries, Role::Cut, Role::Carries]);
+    // A ball that shall carry link 0 is waited for.
+    let told = [
+        open[0],
+        edge(Some(1), Some(0), 3, Some(false)),
+        edge(None, Some(1), 2, None),
+    ];
+    assert_eq!(spanning_tree(2, &told), [Role::Cut, Role::Carries, Role::Carries]);
+}
+
+#[test]
+fn a_universal_joint_carries_its_predecessor_by_the_same_coordinates() {
+    let text = |sides: &str| {
+        format!(
+            "format = 1\nlinks.rod = {{ cylinder = {{ density = 7850, diameter = 0.02, along = [0.3, 0.1, 0] }} }}\n\
+             [joints.U]\nkind = \"universal\"\naxis = [1, 0, 2]\nsecond_axis = [0, 1, 0.5]\n{sides}\n\
+             springs = [{{ stiffness = 3, damping = 0.1 }}, {{ stiffness = 8 }}]\n\
+             [start]\npositions = {{ \"U.psi\" = 0.7, \"U.theta\" = -0.4 }}\nspeeds = {{ \"U.psi\" = -2, \"U.theta\" = 1 }}"
+        )
+    };
+    let (forwards, backwards) = (
+        text("predecessor.point = [0.1, 0, 0]\nsuccessor = { link = \"rod\", point = [0, 0.2, 0] }"),
+        text("successor.point = [0.1, 0, 0]\npredecessor = { link = \"rod\", point = [0, 0.2, 0] }"),
+    );
+    // Seen from the other side the turns are the opposite ones in the opposite order, and the axes' names exchanged.
+    let ready = |text: &str, turned: bool| {
+        let ready = prepare(read(text));
+        let names: Vec<_> = ready.mechanism.coordinate_names().map(str::to_owned).collect();
+        assert_eq!(
+            names,
+            if turned {
+                ["U.theta", "U.psi"]
+            } else {
+                ["U.psi", "U.theta"]
+            }
+        );
+        ready
+    };
+    let (one, two) = (ready(&forwards, false), ready(&backwards, true));
+    assert_eq!((one.start.q[0], one.start.q[1]), (two.start.q[1], two.start.q[0]));
+    // R(psi, theta) of the file's axes turns the successor against the predecessor in both.
+    let rotation = |ready: &Ready| {
+        let tree = ready.mechanism.system().tree();
+        let mut positions = Positions::new(tree);
+        tree.positions(&ready.start.q, &mut positions);
+        let frame = ready.mechanism.attachment("rod").expect("the rod");
+        (positions.pose(frame.link) * frame.pose).rotation
+    };
+    let (r1, r2) = (rotation(&one), rotation(&two));
+    assert!((r1.transpose() - r2).amax() < 1e-15, "{r1} {r2}");
 }

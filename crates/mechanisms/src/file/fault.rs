@@ -39,18 +39,17 @@ pub(super) fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> 
 }
 
 /// That there is no such thing, and the word that was meant or those there are.
-pub(super) fn unknown<'a>(what: &str, given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    let hint = match nearest(given, known.clone()) {
+pub(super) fn unknown<'a>(
+    what: &str,
+    given: &str,
+    meant: Option<&str>,
+    known: impl Iterator<Item = &'a str>,
+) -> String {
+    let known: Vec<String> = known.map(|word| format!("`{word}`")).collect();
+    let hint = match meant {
         Some(word) => format!("did you mean `{word}`?"),
-        None => {
-            let known: Vec<String> = known.map(|word| format!("`{word}`")).collect();
-            let known = if known.is_empty() {
-                "none".into()
-            } else {
-                known.join(", ")
-            };
-            format!("there are {known}")
-        }
+        None if known.is_empty() => "there are none".into(),
+        None => format!("there are {}", known.join(", ")),
     };
     format!("there is no {what} `{given}`; {hint}")
 }
@@ -66,7 +65,7 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
 /// Collects faults with the places of their keys. An entry of a list has its number in square brackets for a key.
 pub(super) struct Faults<'a> {
     text: &'a str,
-    /// What is read: the text without what was left out of it.
+    /// What is read.
     mended: DeValue<'a>,
     left_out: Vec<Vec<String>>,
     found: Vec<Fault>,
@@ -82,7 +81,7 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// From now on keys are looked up in this table, which has no more than what was not left out.
+    /// From now on keys are looked up in this table.
     pub fn look_up_in(&mut self, mended: DeTable<'a>) {
         self.mended = DeValue::Table(mended);
     }
@@ -96,7 +95,7 @@ impl<'a> Faults<'a> {
         });
     }
 
-    /// Remembers that what these keys lead to is not read.
+    /// Remembers that what these keys lead to is not read, and that at most something stands in for it.
     pub fn leave_out(&mut self, keys: &[&str]) {
         self.left_out.push(keys.iter().map(ToString::to_string).collect());
     }
@@ -107,53 +106,36 @@ impl<'a> Faults<'a> {
         self.left_out.iter().any(inside)
     }
 
-    /// Whether all that a key at the top leads to was left out.
-    pub fn lacks_all(&self, key: &str) -> bool {
-        self.left_out.iter().any(|path| path.as_slice() == [key])
+    /// Whether all that these keys lead to was left out.
+    pub fn lacks_all(&self, keys: &[&str]) -> bool {
+        self.left_out.iter().any(|path| path == keys)
     }
 
-    /// What was left out directly below a key at the top.
-    pub fn lacking(&self, key: &str) -> impl Iterator<Item = &str> {
-        self.left_out.iter().filter_map(move |path| match path.as_slice() {
-            [first, second] if first == key => Some(second.as_str()),
-            _ => None,
-        })
-    }
-
-    /// A fault of the value to which the keys lead, at the last of them that is there; none where part of that value was left out,
-    /// which may be all that is wrong with it.
+    /// A fault of the value to which the keys lead, at the last of them that is there; none where something in that value was left
+    /// out, which may be all that is wrong with it.
     pub fn add(&mut self, keys: &[&str], message: impl Into<String>) {
         let (mut byte, mut value) = (0, Some(&self.mended));
-        let mut path: Vec<String> = Vec::new();
         for &key in keys {
-            let mut name = key.to_owned();
             let next = match value {
-                Some(DeValue::Table(table)) => table.iter().find(|(name, _)| name.get_ref() == key),
+                Some(DeValue::Table(table)) => {
+                    let entry = table.iter().find(|(name, _)| name.get_ref() == key);
+                    entry.map(|(name, value)| (name.span(), value.get_ref()))
+                }
                 Some(DeValue::Array(list)) => {
-                    let number = key.trim_matches(['[', ']']).parse().unwrap_or(usize::MAX);
-                    // Its number in the text: entries that were left out count.
-                    let numbers = (0..).map(|k| format!("[{k}]"));
-                    let mut kept =
-                        numbers.filter(|k| !self.left_out.iter().any(|out| out.split_last() == Some((k, &path[..]))));
-                    if let Some(entry) = list.get(number) {
-                        name = kept.nth(number).unwrap_or(name);
-                        byte = entry.span().start;
-                        value = Some(entry.get_ref());
-                    }
-                    path.push(name);
-                    continue;
+                    let entry = key
+                        .trim_matches(['[', ']'])
+                        .parse()
+                        .ok()
+                        .and_then(|k: usize| list.get(k));
+                    entry.map(|entry| (entry.span(), entry.get_ref()))
                 }
                 _ => None,
             };
-            if let Some((name, _)) = next {
-                byte = name.span().start;
-            }
-            value = next.map(|(_, value)| value.get_ref());
-            path.push(name);
+            byte = next.as_ref().map_or(byte, |(span, _)| span.start);
+            value = next.map(|(_, value)| value);
         }
-        let path: Vec<&str> = path.iter().map(String::as_str).collect();
-        if !self.lacks(&path) {
-            self.at(byte, &path, message);
+        if !self.lacks(keys) {
+            self.at(byte, keys, message);
         }
     }
 

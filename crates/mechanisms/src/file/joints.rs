@@ -1,8 +1,9 @@
 //! The joints of a scene file: what they are, where they sit, which of them carry links.
 
-use super::fault::{Faults, unknown};
+use super::fault::{Faults, nearest, unknown};
 use super::format::{JointItem, Kind, MountItem, SceneFile};
 use super::loads::{self, Sitting};
+use super::names::unread;
 use crate::linkage::{LinkHandle, Linkage, Mount};
 use crate::spanning::{Edge, Role, spanning_tree};
 use linkdyn_kinematics::{Joint, Pose};
@@ -25,7 +26,11 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
     let mut read = Vec::new();
     let mut coordinates = HashSet::new();
     for (name, item) in &file.joints {
-        let joint = joint(name, item, faults);
+        let joint = if unread(name, faults) {
+            None
+        } else {
+            joint(name, item, faults)
+        };
         let predecessor = mount(file, name, "predecessor", &item.predecessor, faults);
         let successor = mount(file, name, "successor", &item.successor, faults);
         if let (Some(one), Some(two)) = (predecessor, successor)
@@ -52,7 +57,7 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
             });
         }
     }
-    if read.len() < file.joints.len() || faults.lacks(&["joints"]) {
+    if read.len() < file.joints.len() || faults.lacks(&["joints"]) || faults.lacks_all(&["links"]) {
         return Vec::new();
     }
     let edges: Vec<Edge> = read
@@ -62,6 +67,7 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
             successor: read.successor.link.0,
             freedoms: read.joint.speeds(),
             cut: read.item.cut.or(sits_on_coordinates(read.item).map(|_| false)),
+            backwards: backwards(read.joint).is_some(),
         })
         .collect();
     let roles = spanning_tree(file.links.len(), &edges);
@@ -89,15 +95,20 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
             }
             Role::Carries => {
                 let joint = linkage.joint(name, read.joint, one, two);
-                read.sitting.put(joint, item, linkage);
+                read.sitting.put(joint, linkage);
             }
             Role::CarriesBackwards => match backwards(read.joint) {
-                Some(kind) => {
+                Some((kind, exchanged)) => {
                     let joint = linkage.joint(name, kind, two, one);
-                    read.sitting.put(joint, item, linkage);
+                    let mut sitting = read.sitting;
+                    if exchanged {
+                        sitting.exchange(name, item.kind);
+                    }
+                    sitting.put(joint, linkage);
                 }
                 None => {
-                    let message = "must carry its successor; exchange predecessor and successor, or set `cut = true`";
+                    let message = "hangs nearer to the ground than the predecessor, which joints of this kind cannot carry; exchange \
+                                   predecessor and successor";
                     faults.add(&["joints", name, "successor"], message);
                 }
             },
@@ -137,13 +148,18 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
     there.into_iter().find_map(|(there, key)| there.then_some(key))
 }
 
-/// The same joint with exchanged sides and the same coordinates, where there is one.
-fn backwards(joint: Joint) -> Option<Joint> {
+/// The same joint with exchanged sides and coordinates that mean the same, where there is one, and whether their order is the opposite.
+/// Coordinates of balls, planes and free links would have to say how the predecessor moves against the successor.
+fn backwards(joint: Joint) -> Option<(Joint, bool)> {
     match joint {
-        Joint::Revolute { axis } => Some(Joint::Revolute { axis: -axis }),
-        Joint::Prismatic { axis } => Some(Joint::Prismatic { axis: -axis }),
-        Joint::Cylindrical { axis } => Some(Joint::Cylindrical { axis: -axis }),
-        Joint::Fixed => Some(Joint::Fixed),
+        Joint::Revolute { axis } => Some((Joint::Revolute { axis: -axis }, false)),
+        Joint::Prismatic { axis } => Some((Joint::Prismatic { axis: -axis }, false)),
+        Joint::Cylindrical { axis } => Some((Joint::Cylindrical { axis: -axis }, false)),
+        Joint::Universal { first, second } => {
+            let (first, second) = (-second, -first);
+            Some((Joint::Universal { first, second }, true))
+        }
+        Joint::Fixed => Some((Joint::Fixed, false)),
         _ => None,
     }
 }
@@ -231,10 +247,9 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
         Some(link) => match file.links.get_index_of(link) {
             Some(k) => LinkHandle(Some(k)),
             None => {
-                let known = file.links.keys().map(String::as_str);
-                let left_out: Vec<&str> = faults.lacking("links").collect();
-                if !left_out.contains(&link) && !faults.lacks_all("links") {
-                    let message = unknown("link", link, known.chain(left_out).chain(["ground"]));
+                let known = || file.links.keys().map(String::as_str).chain(["ground"]);
+                if !faults.lacks_all(&["links"]) {
+                    let message = unknown("link", link, nearest(link, known()), known());
                     faults.add(&["joints", name, side, "link"], message);
                 }
                 return None;

@@ -1,16 +1,18 @@
 //! What sits in the joints of a scene file: drives, springs, friction.
 
 use super::fault::Faults;
-use super::format::{DriveItem, FrictionItem, JointItem, SurfaceItem};
+use super::format::{DriveItem, FrictionItem, JointItem, Kind, SurfaceItem};
 use super::joints::any_of_kind;
+use super::names::unread;
 use crate::drive::Drive;
-use crate::linkage::{JointHandle, Linkage};
+use crate::linkage::{JointHandle, Linkage, qualified};
 use crate::spline::Spline;
 use crate::spring::Spring;
 use linkdyn_friction::{BearingModel, Characteristic, Exponential, JournalBearing, Surface};
 
 /// What sits in a joint.
 pub(super) struct Sitting {
+    names: Option<Vec<String>>,
     drives: Vec<Drive>,
     springs: Vec<Spring>,
     friction: Option<(Exponential, JournalBearing)>,
@@ -18,20 +20,8 @@ pub(super) struct Sitting {
 
 /// Reads what sits in a joint, whether or not the joint itself can be read.
 pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sitting {
-    let joint = any_of_kind(item.kind);
-    let freedoms = joint.coordinates();
-    if let Some(names) = item.coordinates.as_ref().filter(|names| names.len() != freedoms) {
-        let message = format!("the joint has {freedoms} coordinates, {} names were given", names.len());
-        faults.add(&["joints", name, "coordinates"], message);
-    }
-    for (key, there) in [
-        ("drives", !item.drives.is_empty()),
-        ("friction", item.friction.is_some()),
-    ] {
-        if there && freedoms != 1 {
-            let message = format!("needs a joint with one coordinate; this one has {freedoms}");
-            faults.add(&["joints", name, key], message);
-        }
+    if !unread(name, faults) {
+        numbers(name, item, faults);
     }
     let drives: Vec<Drive> = item.drives.iter().map(drive).collect();
     for (k, drive) in drives.iter().enumerate() {
@@ -55,17 +45,6 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
             );
         }
     }
-    if !springs.is_empty() && joint.speeds() != freedoms {
-        let message =
-            "need a joint whose speeds are the rates of its coordinates; take `spherical_zyx` for a ball joint";
-        faults.add(&["joints", name, "springs"], message);
-    } else if !springs.is_empty() && springs.len() != freedoms {
-        let message = format!(
-            "the joint has {freedoms} coordinates, {} springs were given",
-            springs.len()
-        );
-        faults.add(&["joints", name, "springs"], message);
-    }
     let friction = item.friction.as_ref().map(friction);
     if let Some((characteristic, bearing)) = &friction
         && let Err(error) = characteristic.validate().and_then(|()| bearing.validate())
@@ -73,16 +52,51 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
         faults.add(&["joints", name, "friction"], error.to_string());
     }
     Sitting {
+        names: item.coordinates.clone(),
         drives,
         springs,
         friction,
     }
 }
 
+/// How many names, springs and so on the joint can have.
+fn numbers(name: &str, item: &JointItem, faults: &mut Faults<'_>) {
+    let joint = any_of_kind(item.kind);
+    let freedoms = joint.coordinates();
+    let names = item.coordinates.as_ref().map_or(freedoms, Vec::len);
+    let springs = item.springs.len();
+    for (key, found) in [("coordinates", names), ("springs", springs)] {
+        if key == "springs" && springs > 0 && joint.speeds() != freedoms {
+            let message =
+                "need a joint whose speeds are the rates of its coordinates; take `spherical_zyx` for a ball joint";
+            faults.add(&["joints", name, key], message);
+        } else if found != freedoms && (key == "coordinates" || springs > 0) {
+            let message = format!("must have {freedoms} entries, one for each coordinate of the joint, not {found}");
+            faults.add(&["joints", name, key], message);
+        }
+    }
+    for (key, there) in [
+        ("drives", !item.drives.is_empty()),
+        ("friction", item.friction.is_some()),
+    ] {
+        if there && freedoms != 1 {
+            let message = format!("needs a joint with one coordinate; this one has {freedoms}");
+            faults.add(&["joints", name, key], message);
+        }
+    }
+}
+
 impl Sitting {
-    /// Puts all of it, and the names of the coordinates, into a joint that carries a link.
-    pub fn put(self, joint: JointHandle, item: &JointItem, linkage: &mut Linkage) {
-        if let Some(names) = &item.coordinates {
+    /// Puts the coordinates of a joint into the opposite order.
+    pub fn exchange(&mut self, name: &str, kind: Kind) {
+        let default = || qualified(name, any_of_kind(kind).coordinate_names());
+        self.names.get_or_insert_with(default).reverse();
+        self.springs.reverse();
+    }
+
+    /// Puts all of it into a joint that carries a link.
+    pub fn put(self, joint: JointHandle, linkage: &mut Linkage) {
+        if let Some(names) = self.names {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             linkage.coordinate_names(joint, &names);
         }

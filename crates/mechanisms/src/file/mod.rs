@@ -36,6 +36,7 @@ use crate::linkage::Linkage;
 use crate::mechanism::Start;
 use crate::scene::Scene;
 use fault::Faults;
+use names::Names;
 use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, Deserializer};
@@ -63,8 +64,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
     if !errors.is_empty() {
         return Err(faults.result());
     }
-    let given = table.into_inner();
-    let mut mended = given.clone();
+    let mut mended = table.into_inner();
     shape::mend(&schema(), &mut mended, &mut faults);
     faults.look_up_in(mended.clone());
     let file = match SceneFile::deserialize(Deserializer::from(Spanned::new(0..0, mended))) {
@@ -84,8 +84,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
     let mut linkage = Linkage::new(file.gravity);
     links::add(&file, &mut linkage, &mut faults);
     let cut = joints::add(&file, &mut linkage, &mut faults);
-    let names = names::coordinates(&file, &cut, &given, &faults);
-    start::check(&file, &names, &mut faults);
+    start::check(&file, &Names::new(&file, &cut, &faults), &mut faults);
     if faults.none()
         && let Err(error) = linkage.build()
     {

@@ -5,22 +5,14 @@ use super::fault::{Faults, nearest, unknown};
 use super::quantity::Quantity;
 use serde_json::Value as Json;
 use std::borrow::Cow;
-use std::mem::{replace, take};
+use std::mem::take;
 use toml::Spanned;
-use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
+use toml::de::{DeArray, DeString, DeTable, DeValue};
 
-/// Takes out of `table` what has no meaning, and mends words that are nearly right, so that what they say is judged too. Required keys
-/// at the top are filled in, for the rest to be read without them.
+/// Mends a table until it has the shape: words that are nearly right are taken for those, so that what they say is judged too; keys
+/// without meaning go; something stands in for what is missing or of the wrong kind. [`Faults::lacks`] knows the last two.
 pub(super) fn mend(schema: &Json, table: &mut DeTable<'_>, faults: &mut Faults<'_>) {
     Shape { schema, faults }.object(schema, table, 0, &[]);
-    for key in required(schema) {
-        let value = match schema["properties"][key]["type"].as_str() {
-            Some("integer") => DeValue::Integer(DeInteger::default()),
-            _ => DeValue::Table(DeTable::new()),
-        };
-        let key = Spanned::new(0..0, DeString::Owned(key.to_owned()));
-        table.entry(key).or_insert(Spanned::new(0..0, value));
-    }
 }
 
 struct Shape<'s, 'f, 'a> {
@@ -43,14 +35,17 @@ impl<'s> Shape<'s, '_, '_> {
         }
     }
 
-    fn refuse(&mut self, at: usize, keys: &[&str], message: impl Into<String>) -> bool {
-        self.faults.at(at, keys, message);
-        self.faults.leave_out(keys);
-        false
+    /// Mends a value; its faults are at the byte `at`.
+    fn value<'a>(&mut self, schema: &'s Json, value: &mut DeValue<'a>, at: usize, keys: &[&str]) {
+        if let Err(message) = self.try_value(schema, value, at, keys) {
+            self.faults.at(at, keys, message);
+            self.faults.leave_out(keys);
+            *value = self.stand_in(schema);
+        }
     }
 
-    /// Whether a value, as far as it is mended, can be read. Its faults are at the byte `at`.
-    fn value(&mut self, schema: &'s Json, value: &mut DeValue<'_>, at: usize, keys: &[&str]) -> bool {
+    /// The error says why nothing in the value can be kept.
+    fn try_value(&mut self, schema: &'s Json, value: &mut DeValue<'_>, at: usize, keys: &[&str]) -> Result<(), String> {
         let choices = self.choices(schema);
         let of_type = |name: &str| -> Vec<&'s Json> {
             let fitting = choices.iter().filter(|choice| types(choice).any(|known| known == name));
@@ -60,12 +55,15 @@ impl<'s> Shape<'s, '_, '_> {
         match value {
             DeValue::Table(table) => match of_type("object").as_slice() {
                 [] => {}
-                [one] => return self.object(one, table, at, keys),
+                [one] => {
+                    self.object(one, table, at, keys);
+                    return Ok(());
+                }
                 several => return self.one_of(several, table, at, keys),
             },
             DeValue::Array(list) => {
                 if let Some(choice) = of_type("array").first() {
-                    return self.list(choice, list, at, keys);
+                    return self.list(choice, list, keys);
                 }
             }
             DeValue::String(text) => {
@@ -78,134 +76,171 @@ impl<'s> Shape<'s, '_, '_> {
                 let value = i64::from_str_radix(number.as_str(), number.radix()).ok();
                 let bound = |name: &str| integers.first().and_then(|choice| choice[name].as_i64());
                 let range = bound("minimum").unwrap_or(i64::MIN)..=bound("maximum").unwrap_or(i64::MAX);
-                if value.is_some_and(|value| range.contains(&value)) {
-                    return true;
-                }
-                let message = format!("{number} must lie between {} and {}", range.start(), range.end());
-                return self.refuse(at, keys, message);
+                return match value {
+                    Some(value) if range.contains(&value) => Ok(()),
+                    Some(_) if bound("maximum").is_none() => {
+                        Err(format!("{number} must be at least {}", range.start()))
+                    }
+                    Some(_) => Err(format!(
+                        "{number} must lie between {} and {}",
+                        range.start(),
+                        range.end()
+                    )),
+                    None => Err(format!("{number} has too many digits for a whole number")),
+                };
             }
             DeValue::Float(number) if !numbers.is_empty() => {
                 let text = number.as_str();
                 let value: f64 = text.parse().unwrap_or(f64::INFINITY);
                 if value.is_finite() || value.is_nan() || text.contains("inf") {
-                    return true;
+                    return Ok(());
                 }
-                return self.refuse(at, keys, format!("{text} is larger than all numbers"));
+                return Err(format!("{text} is larger than all numbers"));
             }
-            DeValue::Boolean(_) if !of_type("boolean").is_empty() => return true,
+            DeValue::Boolean(_) if !of_type("boolean").is_empty() => return Ok(()),
             _ => {}
         }
         let mut wanted: Vec<&str> = choices.iter().flat_map(|choice| types(choice)).map(in_words).collect();
         wanted.dedup();
-        let message = format!("must be {}, not {}", wanted.join(" or "), in_words(value.type_str()));
-        self.refuse(at, keys, message)
+        Err(format!(
+            "must be {}, not {}",
+            wanted.join(" or "),
+            in_words(value.type_str())
+        ))
     }
 
     /// A table with known keys, or with any names and values of one kind.
-    fn object(&mut self, schema: &'s Json, table: &mut DeTable<'_>, at: usize, keys: &[&str]) -> bool {
+    fn object(&mut self, schema: &'s Json, table: &mut DeTable<'_>, at: usize, keys: &[&str]) {
         let properties = schema["properties"].as_object();
         let entries = Some(&schema["additionalProperties"]).filter(|entry| entry.is_object());
         let find = |name: &str| properties.and_then(|known| known.get(name)).or(entries);
         let given: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
         let words = properties.into_iter().flatten().map(|(word, _)| word.as_str());
-        let free = words.filter(|word| !given.iter().any(|given| given == word));
-        let mut mended = Vec::new();
-        let mut kept = DeTable::new();
+        let mut free: Vec<&str> = words
+            .clone()
+            .filter(|word| !given.iter().any(|given| given == word))
+            .collect();
         for (mut key, mut value) in take(table) {
             let (name, at) = (key.get_ref().to_string(), key.span().start);
             let keys = [keys, &[name.as_str()]].concat();
             let mut schema = find(&name);
             if schema.is_none() {
-                self.faults.at(at, &keys, unknown("key", &name, free.clone()));
-                // Taken for the word that it is nearly, once.
-                if let Some(word) = nearest(&name, free.clone()).filter(|word| !mended.contains(word)) {
-                    mended.push(word);
+                let meant = nearest(&name, free.iter().copied());
+                self.faults.at(at, &keys, unknown("key", &name, meant, words.clone()));
+                if let Some(word) = meant {
+                    free.retain(|free| *free != word);
                     schema = find(word);
                     *key.get_mut() = Cow::Owned(word.to_owned());
                 }
             }
             match schema {
-                Some(schema) if self.value(schema, value.get_mut(), at, &keys) => {
-                    kept.insert(key, value);
+                Some(schema) => {
+                    self.value(schema, value.get_mut(), at, &keys);
+                    table.insert(key, value);
                 }
-                _ => self.faults.leave_out(&keys),
+                None => self.faults.leave_out(&keys),
             }
         }
-        *table = kept;
-        let mut whole = true;
-        for key in required(schema) {
-            if !given.iter().any(|given| given == key) && !mended.contains(&key) {
-                self.refuse(at, &[keys, &[key]].concat(), "is missing");
-            }
-            whole &= table.keys().any(|there| there.get_ref() == key);
+        for key in required(schema).filter(|key| free.contains(key)) {
+            let keys = [keys, &[key]].concat();
+            self.faults.at(at, &keys, "is missing");
+            self.faults.leave_out(&keys);
+            let value = self.stand_in(&schema["properties"][key]);
+            table.insert(
+                Spanned::new(at..at, Cow::Owned(key.to_owned())),
+                Spanned::new(at..at, value),
+            );
         }
-        whole
     }
 
     /// A table whose one key says which of several kinds of table its value is.
-    fn one_of(&mut self, choices: &[&'s Json], table: &mut DeTable<'_>, at: usize, keys: &[&str]) -> bool {
+    fn one_of(
+        &mut self,
+        choices: &[&'s Json],
+        table: &mut DeTable<'_>,
+        at: usize,
+        keys: &[&str],
+    ) -> Result<(), String> {
         let words = choices.iter().flat_map(|choice| required(choice));
         let key = table.keys().next().filter(|_| table.len() == 1);
-        let Some((at_key, key)) = key.map(|key| (key.span().start, key.get_ref().to_string())) else {
+        let Some(key) = key.map(|key| key.get_ref().to_string()) else {
             let words: Vec<String> = words.map(|word| format!("`{word}`")).collect();
-            return self.refuse(at, keys, format!("must have one key of {}", words.join(", ")));
+            return Err(format!("must have one key of {}", words.join(", ")));
         };
         let word = words.clone().find(|word| *word == key).or(nearest(&key, words.clone()));
-        match choices.iter().find(|choice| required(choice).next() == word) {
-            Some(choice) if word.is_some() => self.object(choice, table, at, keys),
-            _ => self.refuse(at_key, &[keys, &[&key]].concat(), unknown("key", &key, words)),
-        }
+        let choice = choices
+            .iter()
+            .find(|choice| word.is_some() && required(choice).next() == word);
+        let choice = choice.ok_or_else(|| unknown("key", &key, None, words))?;
+        self.object(choice, table, at, keys);
+        Ok(())
     }
 
-    fn list(&mut self, schema: &'s Json, list: &mut DeArray<'_>, at: usize, keys: &[&str]) -> bool {
+    fn list(&mut self, schema: &'s Json, list: &mut DeArray<'_>, keys: &[&str]) -> Result<(), String> {
         let size = schema["minItems"].as_u64().filter(|size| schema["maxItems"] == *size);
         if let Some(size) = size.filter(|size| *size != list.len() as u64) {
-            return self.refuse(at, keys, format!("must have {size} entries, not {}", list.len()));
+            return Err(format!("must have {size} entries, not {}", list.len()));
         }
-        let all = list.len();
-        let mut number = 0;
-        *list = replace(list, DeArray::new())
-            .into_iter()
-            .filter_map(|mut entry| {
-                let name = format!("[{number}]");
-                number += 1;
-                let (at, keys) = (entry.span().start, [keys, &[name.as_str()]].concat());
-                let sound = self.value(&schema["items"], entry.get_mut(), at, &keys);
-                if !sound {
-                    self.faults.leave_out(&keys);
-                }
-                sound.then_some(entry)
-            })
-            .collect();
-        size.is_none() || list.len() == all
+        for (number, entry) in list.iter_mut().enumerate() {
+            let (at, name) = (entry.span().start, format!("[{number}]"));
+            self.value(&schema["items"], entry.get_mut(), at, &[keys, &[&name]].concat());
+        }
+        Ok(())
     }
 
     /// A text, free or one of some words.
-    fn text(&mut self, choices: &[&'s Json], text: &mut DeString<'_>, at: usize, keys: &[&str]) -> bool {
-        let words = choices.iter().flat_map(|choice| {
-            let several = choice["enum"].as_array().into_iter().flatten();
-            several.chain(choice.get("const")).filter_map(Json::as_str)
-        });
+    fn text(&mut self, choices: &[&'s Json], text: &mut DeString<'_>, at: usize, keys: &[&str]) -> Result<(), String> {
+        let words = choices.iter().flat_map(|choice| words(choice));
         if words.clone().next().is_none() {
             // The one kind of text that must have a form.
             let formed = choices.iter().any(|choice| choice.get("pattern").is_some());
             if !formed || Quantity::degrees(text).is_some() {
-                return true;
+                return Ok(());
             }
-            let message = format!("must be a number or degrees like \"30 deg\", not \"{text}\"");
-            return self.refuse(at, keys, message);
+            return Err(format!("must be a number or degrees like \"30 deg\", not \"{text}\""));
         }
         if words.clone().any(|word| word == text) {
-            return true;
+            return Ok(());
         }
-        let message = unknown("word", text, words.clone());
-        if let Some(word) = nearest(text, words) {
-            self.faults.at(at, keys, message);
-            *text = Cow::Owned(word.to_owned());
-            return true;
-        }
-        self.refuse(at, keys, message)
+        let meant = nearest(text, words.clone());
+        let message = unknown("word", text, meant, words);
+        let meant = meant.ok_or_else(|| message.clone())?;
+        self.faults.at(at, keys, message);
+        *text = Cow::Owned(meant.to_owned());
+        Ok(())
     }
+
+    /// Some value that can be read.
+    fn stand_in<'a>(&self, schema: &'s Json) -> DeValue<'a> {
+        let choices = self.choices(schema);
+        let Some(schema) = choices.first() else {
+            return DeValue::Table(DeTable::new());
+        };
+        let spanned = |value| Spanned::new(0..0, value);
+        match types(schema).next() {
+            Some("object") => {
+                let entry = |key: &str| {
+                    let value = self.stand_in(&schema["properties"][key]);
+                    (Spanned::new(0..0, Cow::Owned(key.to_owned())), spanned(value))
+                };
+                DeValue::Table(required(schema).map(entry).collect())
+            }
+            Some("array") => {
+                let size = schema["minItems"].as_u64().unwrap_or(0);
+                DeValue::Array((0..size).map(|_| spanned(self.stand_in(&schema["items"]))).collect())
+            }
+            Some("string") => DeValue::String(words(schema).next().unwrap_or_default().to_owned().into()),
+            Some("boolean") => DeValue::Boolean(false),
+            // Within all bounds there are.
+            _ => DeValue::parse("1").map_or(DeValue::Boolean(false), Spanned::into_inner),
+        }
+    }
+}
+
+/// The words that a text may be.
+fn words(schema: &Json) -> impl Iterator<Item = &str> + Clone {
+    let several = schema["enum"].as_array().into_iter().flatten();
+    several.chain(schema.get("const")).filter_map(Json::as_str)
 }
 
 fn required(schema: &Json) -> impl Iterator<Item = &str> + Clone {
