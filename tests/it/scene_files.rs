@@ -1,14 +1,17 @@
 //! Scene files against closed forms and against the same linkages in Rust.
 
-use linkdyn_integrators::Auto;
+use linkdyn_integrators::{Auto, Dop853};
 use linkdyn_kinematics::Positions;
-use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
-use linkdyn_mechanisms::{Edge, Observation, Role, Scene, file, spanning_tree};
+use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, rsrrr, rsup};
+use linkdyn_mechanisms::{Edge, Linkage, Observation, Role, Scene, file, spanning_tree};
 use linkdyn_tests::scenes::{Ready, prepare, simulate};
 
 const FOUR_BAR: &str = include_str!("../../crates/mechanisms/scenes/four_bar.toml");
 const RSRRR: &str = include_str!("../../crates/mechanisms/scenes/rsrrr.toml");
 const RSRRR_FRICTION: &str = include_str!("../../crates/mechanisms/scenes/rsrrr_friction.toml");
+const RSUP: &str = include_str!("../../crates/mechanisms/scenes/rsup.toml");
+const RSUP_CLEARANCE: &str = include_str!("../../crates/mechanisms/scenes/rsup_clearance.toml");
+const RSUP_FLEXIBLE: &str = include_str!("../../crates/mechanisms/scenes/rsup_flexible.toml");
 const SLIDER_CRANK: &str = include_str!("../../crates/mechanisms/scenes/slider_crank.toml");
 const RSSR: &str = include_str!("../../crates/mechanisms/scenes/rssr.toml");
 
@@ -49,6 +52,47 @@ fn files_run() {
         let (first, last) = (energy(&run.rows[0]), energy(run.rows.last().expect("rows")));
         assert!((last - first).abs() < 1e-8, "{first} {last}");
     }
+}
+
+/// A description without the signs of its zeros, which a file does not write.
+fn plain(linkage: &Linkage) -> String {
+    format!("{linkage:?}").replace("-0.0,", "0.0,").replace("-0.0]", "0.0]")
+}
+
+#[test]
+fn rsup_as_a_file_is_the_same_linkage_to_the_bit() {
+    let (clearance, flexible) = (Some(ClearanceKind::Planar), Some(2));
+    for (clearance, flexible, text) in [
+        (None, None, RSUP),
+        (clearance, None, RSUP_CLEARANCE),
+        (None, flexible, RSUP_FLEXIBLE),
+    ] {
+        let variant = Rsup {
+            clearance,
+            flexible,
+            ..Rsup::default()
+        };
+        let (rust, file) = (rsup(&variant).expect("a scene"), read(text));
+        assert_eq!(plain(&rust.linkage), plain(&file.linkage));
+        assert_eq!(rust.start, file.start);
+        assert_eq!((rust.until, rust.reactions), (file.until, file.reactions));
+        assert_eq!((rust.crank, rust.output), (file.crank, file.output));
+    }
+}
+
+#[test]
+fn spatial_clearance_as_a_file_runs_to_the_same_rows() {
+    let text = RSUP_CLEARANCE.replace("force_point", "length = 0.02\nforce_point");
+    let variant = Rsup {
+        clearance: Some(ClearanceKind::Spatial),
+        ..Rsup::default()
+    };
+    let [rust, file] = [rsup(&variant).expect("a scene"), read(&text)].map(|scene| {
+        let run = simulate(&prepare(scene), Dop853::default(), 1e-10, 0.1, 0.01);
+        run.end.expect("runs");
+        run.rows
+    });
+    assert_eq!(rust, file);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Along which axis of its frame a beam runs from its beginning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "file", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Along {
     /// Along +x.

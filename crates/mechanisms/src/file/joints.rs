@@ -1,10 +1,13 @@
 //! The joints of a scene file: what they are, where they sit, which of them carry links.
 
+use super::clearance;
 use super::fault::{Faults, nearest, unknown};
 use super::format::{JointItem, Kind, MountItem, SceneFile};
+use super::links::Links;
 use super::loads::{self, Sitting};
 use super::names::unread;
-use crate::linkage::{LinkHandle, Linkage, Mount};
+use crate::clearance::Clearance;
+use crate::linkage::{Linkage, Mount};
 use crate::spanning::{Edge, Role, spanning_tree};
 use linkdyn_kinematics::{Joint, Pose};
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -18,11 +21,12 @@ struct Read<'f> {
     predecessor: Mount,
     successor: Mount,
     sitting: Sitting,
+    clearance: Option<Clearance>,
 }
 
 /// Adds all joints, in the order of the file. Which of them are cut is judged only where all could be read. The result are the names of
 /// those that are.
-pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Vec<String> {
+pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Vec<String> {
     let mut read = Vec::new();
     let mut coordinates = HashSet::new();
     for (name, item) in &file.joints {
@@ -31,8 +35,8 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
         } else {
             joint(name, item, faults)
         };
-        let predecessor = mount(file, name, "predecessor", &item.predecessor, faults);
-        let successor = mount(file, name, "successor", &item.successor, faults);
+        let predecessor = mount(links, name, "predecessor", &item.predecessor, faults);
+        let successor = mount(links, name, "successor", &item.successor, faults);
         if let (Some(one), Some(two)) = (predecessor, successor)
             && one.link == two.link
         {
@@ -40,6 +44,18 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
             faults.add(&["joints", name, "successor"], message);
         }
         let sitting = loads::read(name, item, faults);
+        let clearance = item
+            .clearance
+            .as_ref()
+            .and_then(|clearance| clearance::read(name, clearance, faults));
+        if item.clearance.is_some() && !unread(name, faults) && item.kind != Kind::Revolute {
+            let message = "goes with revolute joints only";
+            faults.add(&["joints", name, "clearance"], message);
+        }
+        if item.clearance.is_some() && item.cut == Some(false) {
+            let message = "a joint with clearance is cut; leave `cut` out";
+            faults.add(&["joints", name, "cut"], message);
+        }
         for coordinate in item.coordinates.iter().flatten() {
             if !coordinates.insert(coordinate) {
                 let message = format!("the name `{coordinate}` is used twice");
@@ -54,24 +70,50 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
                 predecessor,
                 successor,
                 sitting,
+                clearance,
             });
         }
     }
     if read.len() < file.joints.len() || faults.lacks(&["joints"]) || faults.lacks_all(&["links"]) {
         return Vec::new();
     }
-    let edges: Vec<Edge> = read
-        .iter()
-        .map(|read| Edge {
+    // The joints in beams, which stand in the linkage already, carry as they are.
+    let inner = linkage.joints.iter().map(|joint| Edge {
+        predecessor: joint.predecessor.link.0,
+        successor: joint.successor.link.0,
+        freedoms: joint.joint.speeds(),
+        cut: Some(false),
+        backwards: false,
+    });
+    let outer = read.iter().map(|read| {
+        let told = read.item.cut.or(sits_on_coordinates(read.item).map(|_| false));
+        Edge {
             predecessor: read.predecessor.link.0,
             successor: read.successor.link.0,
             freedoms: read.joint.speeds(),
-            cut: read.item.cut.or(sits_on_coordinates(read.item).map(|_| false)),
+            cut: if read.item.clearance.is_some() {
+                Some(true)
+            } else {
+                told
+            },
             backwards: backwards(read.joint).is_some(),
-        })
-        .collect();
-    let roles = spanning_tree(file.links.len(), &edges);
-    connected(file, &edges, &roles, faults);
+        }
+    });
+    let edges: Vec<Edge> = inner.chain(outer).collect();
+    let mut roles = spanning_tree(linkage.links.len(), &edges);
+    connected(links, &edges, &roles, faults);
+    let inner = linkage.joints.len();
+    for (joint, _) in linkage
+        .joints
+        .iter()
+        .zip(&roles)
+        .filter(|(_, role)| **role != Role::Carries)
+    {
+        let (link, _) = joint.name.rsplit_once('.').unwrap_or((&joint.name, ""));
+        let message = "its beginning must hang nearer to the ground than its end; let the beam run the other way";
+        faults.add(&["links", link, "beam"], message);
+    }
+    roles.drain(..inner);
     let mut cut = Vec::new();
     for (read, role) in read.into_iter().zip(roles) {
         let (name, item) = (read.name, read.item);
@@ -90,7 +132,10 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
                         "goes with joints that carry a link; this one is cut, so cut another joint of its loop",
                     );
                 }
-                linkage.cut(name, read.joint, one, two);
+                let joint = linkage.cut(name, read.joint, one, two);
+                if let Some(clearance) = read.clearance {
+                    linkage.clearance(joint, clearance);
+                }
                 cut.push(name.to_owned());
             }
             Role::Carries => {
@@ -118,22 +163,22 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
 }
 
 /// Refuses links that hang on nothing.
-fn connected(file: &SceneFile, edges: &[Edge], roles: &[Role], faults: &mut Faults<'_>) {
-    let carried: HashSet<usize> = edges
-        .iter()
-        .zip(roles)
-        .filter_map(|(edge, role)| match role {
-            Role::Carries => edge.successor,
-            Role::CarriesBackwards => edge.predecessor,
-            Role::Cut => None,
-        })
-        .collect();
-    let links = file.links.keys().enumerate();
-    for (_, name) in links.filter(|(k, _)| !carried.contains(k)) {
-        faults.add(
-            &["links", name],
-            "no chain of joints that are not cut leads from it to the ground",
-        );
+fn connected(links: &Links, edges: &[Edge], roles: &[Role], faults: &mut Faults<'_>) {
+    let carried = edges.iter().zip(roles).filter_map(|(edge, role)| match role {
+        Role::Carries => edge.successor,
+        Role::CarriesBackwards => edge.predecessor,
+        Role::Cut => None,
+    });
+    let carried: HashSet<usize> = carried.collect();
+    for name in links.names() {
+        if links
+            .find(name)
+            .and_then(|link| link.0)
+            .is_some_and(|link| !carried.contains(&link))
+        {
+            let message = "no chain of joints that are not cut leads from it to the ground";
+            faults.add(&["links", name], message);
+        }
     }
 }
 
@@ -241,21 +286,14 @@ fn of_kind(kind: Kind, first: Unit<Vector3<f64>>, second: Unit<Vector3<f64>>) ->
     }
 }
 
-fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
-    let link = match item.link.as_deref() {
-        None | Some("ground") => Linkage::GROUND,
-        Some(link) => match file.links.get_index_of(link) {
-            Some(k) => LinkHandle(Some(k)),
-            None => {
-                let known = || file.links.keys().map(String::as_str).chain(["ground"]);
-                if !faults.lacks_all(&["links"]) {
-                    let message = unknown("link", link, nearest(link, known()), known());
-                    faults.add(&["joints", name, side, "link"], message);
-                }
-                return None;
-            }
-        },
-    };
+fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
+    let link_name = item.link.as_deref().unwrap_or("ground");
+    let link = links.find(link_name);
+    if link.is_none() && !faults.lacks_all(&["links"]) {
+        let known = || links.names().chain(["ground"]);
+        let message = unknown("link", link_name, nearest(link_name, known()), known());
+        faults.add(&["joints", name, side, "link"], message);
+    }
     let pose = match (item.rotation, item.turn) {
         (Some(rows), None) => Pose::from_rows(rows, item.point),
         (None, None) => Pose::translation(item.point[0], item.point[1], item.point[2]),
@@ -287,5 +325,12 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
         faults.add(&["joints", name, side], message);
         return None;
     }
-    Some(Mount { link, pose })
+    if !item.end {
+        return Some(Mount { link: link?, pose });
+    }
+    let mount = links.at_end(link_name, pose);
+    if mount.is_none() && link.is_some() && !faults.lacks(&["links", link_name]) {
+        faults.add(&["joints", name, side, "end"], "only a beam has an end");
+    }
+    mount
 }

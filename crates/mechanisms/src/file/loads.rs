@@ -1,21 +1,22 @@
 //! What sits in the joints of a scene file: drives, springs, friction.
 
 use super::fault::Faults;
-use super::format::{DriveItem, FrictionItem, JointItem, Kind, SurfaceItem};
+use super::format::{DriveItem, JointItem, Kind};
+use super::friction;
 use super::joints::any_of_kind;
 use super::names::unread;
 use crate::drive::Drive;
 use crate::linkage::{JointHandle, Linkage, qualified};
 use crate::spline::Spline;
 use crate::spring::Spring;
-use linkdyn_friction::{BearingModel, Characteristic, Exponential, JournalBearing, Surface};
+use linkdyn_friction::{Bearing, Friction};
 
 /// What sits in a joint.
 pub(super) struct Sitting {
     names: Option<Vec<String>>,
     drives: Vec<Drive>,
     springs: Vec<Spring>,
-    friction: Option<(Exponential, JournalBearing)>,
+    friction: Option<(Friction, Bearing)>,
 }
 
 /// Reads what sits in a joint, whether or not the joint itself can be read.
@@ -45,12 +46,9 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
             );
         }
     }
-    let friction = item.friction.as_ref().map(friction);
-    if let Some((characteristic, bearing)) = &friction
-        && let Err(error) = characteristic.validate().and_then(|()| bearing.validate())
-    {
-        faults.add(&["joints", name, "friction"], error.to_string());
-    }
+    let kind = (!unread(name, faults)).then_some(item.kind);
+    let friction = item.friction.as_ref();
+    let friction = friction.and_then(|friction| friction::read(name, kind, friction, faults));
     Sitting {
         names: item.coordinates.clone(),
         drives,
@@ -147,22 +145,4 @@ fn drive(item: &DriveItem) -> Drive {
             reference_speed,
         },
     }
-}
-
-fn friction(item: &FrictionItem) -> (Exponential, JournalBearing) {
-    let surface = |surface: SurfaceItem| Surface {
-        diameter: surface.diameter,
-        coefficient: surface.coefficient,
-    };
-    let characteristic = Exponential {
-        reference_speed: item.exponential.reference_speed,
-        steepness: item.exponential.steepness,
-    };
-    let bearing = JournalBearing {
-        spacing: item.journal.spacing,
-        surface_a: surface(item.journal.surface_a),
-        surface_b: surface(item.journal.surface_b),
-        face: surface(item.journal.face),
-    };
-    (characteristic, bearing)
 }

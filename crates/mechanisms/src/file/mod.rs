@@ -18,8 +18,11 @@
 //! # Ok::<(), file::SceneFileError>(())
 //! ```
 
+mod beam;
+mod clearance;
 mod fault;
 mod format;
+mod friction;
 mod joints;
 mod links;
 mod loads;
@@ -28,14 +31,18 @@ mod quantity;
 mod shape;
 mod start;
 
+pub use beam::{BeamItem, SectionItem};
+pub use clearance::{BristleItem, ClearanceItem, ContactItem};
 pub use fault::{Fault, SceneFileError};
 pub use format::*;
+pub use friction::FrictionItem;
 pub use quantity::Quantity;
 
 use crate::linkage::Linkage;
 use crate::mechanism::Start;
 use crate::scene::Scene;
 use fault::Faults;
+use links::Links;
 use names::Names;
 use serde::Deserialize;
 use toml::Spanned;
@@ -82,9 +89,11 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         faults.add(&["gravity"], "must be three finite numbers in m/s^2");
     }
     let mut linkage = Linkage::new(file.gravity);
-    links::add(&file, &mut linkage, &mut faults);
-    let cut = joints::add(&file, &mut linkage, &mut faults);
-    start::check(&file, &Names::new(&file, &cut, &faults), &mut faults);
+    let links = Links::add(&file, &mut linkage, &mut faults);
+    let mut names = Names::of_beams(&file, &linkage, &faults);
+    let cut = joints::add(&file, &links, &mut linkage, &mut faults);
+    names.add_joints(&file, &cut, &faults);
+    start::check(&file, &names, &mut faults);
     if faults.none()
         && let Err(error) = linkage.build()
     {
@@ -93,6 +102,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
     if !faults.none() {
         return Err(faults.result());
     }
+    let settings = start::settings(&file.run);
     let first = linkage.joints.iter().flat_map(|joint| joint.coordinates()).next();
     let positions = file.start.positions.into_iter();
     Ok(Scene {
@@ -101,12 +111,13 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         linkage,
         start: Start {
             positions: positions.map(|(name, Quantity(value))| (name, value)).collect(),
-            held: file.start.held,
+            held: start::held(&file.start.held, links.straight),
             speeds: file.start.speeds.into_iter().collect(),
         },
         until: file.run.until,
         reactions: file.run.reactions,
         crank: file.run.crank.or(first).unwrap_or_default(),
         output: file.run.output,
+        settings,
     })
 }

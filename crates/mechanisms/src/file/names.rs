@@ -3,36 +3,44 @@
 use super::fault::{Faults, nearest, unknown};
 use super::format::SceneFile;
 use super::joints::any_of_kind;
-use crate::linkage::qualified;
+use crate::linkage::{Linkage, qualified};
 
 /// Names of coordinates, as far as they are known.
 pub(super) struct Names {
     known: Vec<String>,
-    /// Joints whose coordinates are not known, because their kind is not.
+    /// Joints and beams whose coordinates are not known.
     unread: Vec<String>,
     /// Whether anything may be the name of a coordinate.
     any: bool,
 }
 
 impl Names {
+    /// The names of the turns in beams, which are all joints that the linkage has so far.
+    pub fn of_beams(file: &SceneFile, linkage: &Linkage, faults: &Faults<'_>) -> Self {
+        Self {
+            known: linkage.joints.iter().flat_map(|joint| joint.coordinates()).collect(),
+            unread: file
+                .links
+                .keys()
+                .filter(|name| faults.lacks(&["links", name]))
+                .cloned()
+                .collect(),
+            any: faults.lacks_all(&["joints"]) || faults.lacks_all(&["links"]),
+        }
+    }
+
     /// The names that the joints of a file give, without those in `cut`.
-    pub fn new(file: &SceneFile, cut: &[String], faults: &Faults<'_>) -> Self {
-        let mut names = Self {
-            known: Vec::new(),
-            unread: Vec::new(),
-            any: faults.lacks_all(&["joints"]),
-        };
+    pub fn add_joints(&mut self, file: &SceneFile, cut: &[String], faults: &Faults<'_>) {
         for (name, item) in file.joints.iter().filter(|(name, _)| !cut.contains(name)) {
-            names.any |= faults.lacks(&["joints", name, "coordinates"]);
+            self.any |= faults.lacks(&["joints", name, "coordinates"]);
             match &item.coordinates {
-                Some(given) => names.known.extend(given.iter().cloned()),
-                None if unread(name, faults) => names.unread.push(name.clone()),
-                None => names
+                Some(given) => self.known.extend(given.iter().cloned()),
+                None if unread(name, faults) => self.unread.push(name.clone()),
+                None => self
                     .known
                     .extend(qualified(name, any_of_kind(item.kind).coordinate_names())),
             }
         }
-        names
     }
 
     /// Refuses a name that no coordinate can have.
