@@ -69,6 +69,9 @@ pub struct Linkage {
     /// Whether a joint was named by a handle of another linkage.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) foreign: bool,
+    /// Whether a link is flexible.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) flexible: bool,
     /// Drift terms, if any.
     pub baumgarte: Option<Baumgarte>,
     /// Formulation of the equations of motion.
@@ -113,6 +116,7 @@ impl Linkage {
             cuts: Vec::new(),
             loads: Vec::new(),
             foreign: false,
+            flexible: false,
             baumgarte: None,
             formulation: Formulation::default(),
             reaction_solver: ReactionSolver::default(),
@@ -211,6 +215,11 @@ impl Linkage {
     pub fn load(&mut self, load: impl Load + 'static) -> &mut Self {
         self.loads.push(Arc::new(load));
         self
+    }
+
+    /// Whether a link is flexible, which makes the equations of motion stiff.
+    pub fn is_flexible(&self) -> bool {
+        self.flexible
     }
 
     /// Name of a link, for messages.
