@@ -1,9 +1,14 @@
 //! Scene files against closed forms and against the same linkages in Rust.
 
+use linkdyn_dynamics::RigidInertia;
+use linkdyn_friction::{
+    Bearing, Cubic, Exponential, Friction, HyperbolicTangent, JournalBearing, PadGuide, PiecewiseLinear, Stribeck, Sum,
+    Surface, Viscous,
+};
 use linkdyn_integrators::{Auto, Dop853};
-use linkdyn_kinematics::Positions;
+use linkdyn_kinematics::{Joint, Positions};
 use linkdyn_mechanisms::catalogue::{ClearanceKind, Rsrrr, Rsup, rsrrr, rsup};
-use linkdyn_mechanisms::{Edge, Linkage, Observation, Role, Scene, file, spanning_tree};
+use linkdyn_mechanisms::{Edge, Linkage, Mount, Observation, Role, Scene, file, spanning_tree};
 use linkdyn_tests::scenes::{Ready, prepare, simulate};
 
 const FOUR_BAR: &str = include_str!("../../crates/mechanisms/scenes/four_bar.toml");
@@ -194,4 +199,98 @@ fn a_universal_joint_carries_its_predecessor_by_the_same_coordinates() {
     };
     let (r1, r2) = (rotation(&one), rotation(&two));
     assert!((r1.transpose() - r2).amax() < 1e-15, "{r1} {r2}");
+}
+
+#[test]
+fn friction_takes_all_laws_and_both_bearings() {
+    let text = |kind: &str, laws: &str, bearing: &str| {
+        format!(
+            "format = 1\nlinks.bob = {{ mass = 2, centre = [0.1, 0, 0] }}\n[joints.A]\nkind = \"{kind}\"\naxis = [0, 1, 0]\n\
+             successor.link = \"bob\"\n[joints.A.friction]\n{laws}\n{bearing}\n"
+        )
+    };
+    let surface = |diameter: f64| Surface {
+        diameter,
+        coefficient: 0.2,
+    };
+    let journal = JournalBearing {
+        spacing: 0.03,
+        surface_a: surface(0.01),
+        surface_b: surface(0.01),
+        face: surface(0.015),
+    };
+    let pads = PadGuide {
+        spacing: 0.1,
+        arm: 0.02,
+        pad_a: 0.2,
+        pad_b: 0.2,
+        key: 0.1,
+    };
+    let written = "{ diameter = 0.01, coefficient = 0.2 }";
+    let journal_text = format!(
+        "journal = {{ spacing = 0.03, surface_a = {written}, surface_b = {written}, face = {{ diameter = 0.015, coefficient = 0.2 }} }}"
+    );
+    let pads_text = "pad_guide = { spacing = 0.1, arm = 0.02, pad_a = 0.2, pad_b = 0.2, key = 0.1 }";
+    let (reference_speed, steepness) = (0.01, 3.0);
+    let (exponential, viscous) = (
+        Exponential {
+            reference_speed,
+            steepness,
+        },
+        Viscous { per_speed: 0.5 },
+    );
+    let stribeck = Stribeck {
+        static_ratio: 1.5,
+        stribeck_speed: 0.02,
+        exponent: 2.0,
+        reference_speed,
+    };
+    let laws: [(&str, Friction); 7] = [
+        (
+            "exponential = { reference_speed = 0.01, steepness = 3 }",
+            exponential.into(),
+        ),
+        (
+            "piecewise_linear = { reference_speed = 0.01 }",
+            PiecewiseLinear { reference_speed }.into(),
+        ),
+        (
+            "hyperbolic_tangent = { reference_speed = 0.01 }",
+            HyperbolicTangent { reference_speed }.into(),
+        ),
+        ("cubic = { reference_speed = 0.01 }", Cubic { reference_speed }.into()),
+        (
+            "stribeck = { static_ratio = 1.5, stribeck_speed = 0.02, exponent = 2, reference_speed = 0.01 }",
+            stribeck.into(),
+        ),
+        ("viscous = { per_speed = 0.5 }", viscous.into()),
+        (
+            "viscous = { per_speed = 0.5 }\nexponential = { reference_speed = 0.01, steepness = 3 }",
+            Sum {
+                first: exponential,
+                second: viscous,
+            }
+            .into(),
+        ),
+    ];
+    let axis = nalgebra::Vector3::y_axis();
+    let bearings: [(&str, Joint, Bearing, &str); 2] = [
+        ("revolute", Joint::Revolute { axis }, journal.into(), &journal_text),
+        ("prismatic", Joint::Prismatic { axis }, pads.into(), pads_text),
+    ];
+    for (kind, joint, bearing, bearing_text) in bearings {
+        for (law_text, law) in &laws {
+            let mut rust = Linkage::new([0.0, 0.0, -9.81]);
+            let bob = RigidInertia {
+                mass: 2.0,
+                com: nalgebra::Vector3::new(0.1, 0.0, 0.0),
+                about_com: nalgebra::Matrix3::zeros(),
+            };
+            let bob = rust.link("bob", bob);
+            let a = rust.joint("A", joint, Mount::at_origin(Linkage::GROUND), Mount::at_origin(bob));
+            rust.friction(a, law.clone(), bearing.clone());
+            let file = read(&text(kind, law_text, bearing_text));
+            assert_eq!(format!("{rust:?}"), format!("{:?}", file.linkage));
+        }
+    }
 }

@@ -68,11 +68,20 @@ fn a_file_says_how_it_is_run_and_the_command_line_overrides_it() {
     let joint = "kind = \"revolute\"\naxis = [0, 1, 0]\nsuccessor.link = \"rod\"";
     let text = format!("format = 1\n[links.rod]\n{rod}\n[joints.A]\n{joint}\n{run}");
     fs::write(&file, text).expect("written");
-    let (file, out) = (file.display().to_string(), folder.path().join("out").display().to_string());
+    let (file, out) = (
+        file.display().to_string(),
+        folder.path().join("out").display().to_string(),
+    );
     let said_in = |words: &[&str]| {
         let run = linkdyn(&[&["run", &file, "--json", "--out", &out], words].concat());
         let manifest: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
-        (manifest, fs::read_to_string(folder.path().join("out/states.csv")).expect("rows").lines().count())
+        (
+            manifest,
+            fs::read_to_string(folder.path().join("out/states.csv"))
+                .expect("rows")
+                .lines()
+                .count(),
+        )
     };
     let (manifest, lines) = said_in(&[]);
     assert!(manifest.to_string().contains("\"method\":\"rk4\""), "{manifest}");

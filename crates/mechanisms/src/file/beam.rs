@@ -3,7 +3,7 @@
 use super::fault::Faults;
 use crate::flexible::{Along, FlexibleLink};
 use crate::linkage::Linkage;
-use linkdyn_rfem::{Beam, BeamError, Division, Material, Section, divide};
+use linkdyn_rfem::{BeamError, Division, Material, Section, divide};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -74,14 +74,31 @@ pub enum SectionItem {
 
 /// Adds the beam `name` with the names of its coordinates; a rigid link without mass where it cannot be.
 pub(super) fn add(name: &str, item: &BeamItem, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Option<FlexibleLink> {
-    let beam = match divided(item) {
-        Ok(beam) => beam,
-        Err(error) => {
-            let key = error.item.split('.').next_back().unwrap_or_default();
-            faults.add(&["links", name, "beam", key], error.to_string());
-            return None;
-        }
-    };
+    let keys = ["links", name, "beam"];
+    let section = section(&item.section).map_err(|error| {
+        faults.add(&[&keys[..], &["section"]].concat(), error.to_string());
+    });
+    let material = Material::isotropic(
+        item.density,
+        item.youngs_modulus,
+        item.poissons_ratio,
+        item.relaxation_time,
+    );
+    let beam = material.and_then(|material| match &section {
+        Ok(section) => divide(
+            item.length,
+            section,
+            &material,
+            Division::Standard(item.elements.into()),
+        )
+        .map(Some),
+        Err(()) => Ok(None),
+    });
+    let beam = beam.unwrap_or_else(|error| {
+        let key = error.item.rsplit('.').next().unwrap_or_default();
+        faults.add(&[&keys[..], &[key]].concat(), error.to_string());
+        None
+    })?;
     let link = linkage.flexible_link(name, &beam, item.along);
     for (&joint, r) in link.joints.iter().zip(1..) {
         if let Some(names) = &item.coordinates {
@@ -92,25 +109,13 @@ pub(super) fn add(name: &str, item: &BeamItem, linkage: &mut Linkage, faults: &m
     Some(link)
 }
 
-fn divided(item: &BeamItem) -> Result<Beam, BeamError> {
-    let section = match item.section {
+fn section(item: &SectionItem) -> Result<Section, BeamError> {
+    match *item {
         SectionItem::Circle { diameter } => Section::circle(diameter),
         SectionItem::Tube {
             outer_diameter,
             inner_diameter,
         } => Section::tube(outer_diameter, inner_diameter),
         SectionItem::Rectangle { width, height } => Section::rectangle(width, height),
-    }?;
-    let material = Material::isotropic(
-        item.density,
-        item.youngs_modulus,
-        item.poissons_ratio,
-        item.relaxation_time,
-    )?;
-    divide(
-        item.length,
-        &section,
-        &material,
-        Division::Standard(item.elements.into()),
-    )
+    }
 }

@@ -147,6 +147,7 @@ impl<'a> Faults<'a> {
     /// All faults in the order of the text.
     pub fn result(mut self) -> SceneFileError {
         self.found.sort_by_key(|fault| fault.place);
+        self.found.dedup();
         SceneFileError(self.found)
     }
 }

@@ -30,7 +30,7 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
     let mut read = Vec::new();
     let mut coordinates = HashSet::new();
     for (name, item) in &file.joints {
-        let joint = if unread(name, faults) {
+        let mut joint = if unread(name, faults) {
             None
         } else {
             joint(name, item, faults)
@@ -42,6 +42,7 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
         {
             let message = "has the same link as the predecessor; a joint connects two";
             faults.add(&["joints", name, "successor"], message);
+            joint = None;
         }
         let sitting = loads::read(name, item, faults);
         let clearance = item
@@ -120,7 +121,7 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
         let (one, two) = (read.predecessor, read.successor);
         match role {
             Role::Cut => {
-                if item.cut == Some(false) {
+                if item.cut == Some(false) && item.clearance.is_none() {
                     faults.add(
                         &["joints", name, "cut"],
                         "both links are carried by other joints; leave `cut` out or cut another joint",

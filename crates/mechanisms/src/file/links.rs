@@ -63,9 +63,9 @@ impl Links {
 
     /// The link of a name; the ground is one.
     pub fn find(&self, name: &str) -> Option<LinkHandle> {
-        match self.known.get(name) {
-            None if name == "ground" => Some(Linkage::GROUND),
-            found => found.map(|(link, _)| *link),
+        match name {
+            "ground" => Some(Linkage::GROUND),
+            _ => self.known.get(name).map(|(link, _)| *link),
         }
     }
 

@@ -69,7 +69,7 @@ fn numbers(name: &str, item: &JointItem, faults: &mut Faults<'_>) {
                 "need a joint whose speeds are the rates of its coordinates; take `spherical_zyx` for a ball joint";
             faults.add(&["joints", name, key], message);
         } else if found != freedoms && (key == "coordinates" || springs > 0) {
-            let message = format!("must have {freedoms} entries, one for each coordinate of the joint, not {found}");
+            let message = format!("must have one entry for each coordinate of the joint: {freedoms}, not {found}");
             faults.add(&["joints", name, key], message);
         }
     }
