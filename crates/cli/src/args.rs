@@ -36,7 +36,7 @@ pub enum Command {
 }
 
 /// Options of `linkdyn run`.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct RunArgs {
     /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
@@ -58,7 +58,7 @@ pub struct RunArgs {
     #[arg(long, value_enum, default_value_t = FormulationArg::Recursive)]
     pub formulation: FormulationArg,
     /// Integration method: auto (adams or radau5, as the run finds them cheaper), adams (variable order and step), dop853, dopri5,
-    /// radau5, bdf and rodas (for stiff scenes); with fixed step rk4, newmark [default: auto]
+    /// radau5, bdf and rodas (for stiff scenes); with fixed step rk4, newmark [default: the file's, else auto]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
     /// Relative tolerance of adaptive methods; with clearance the absolute one alone counts [default: 1e-12; radau5,
@@ -77,7 +77,7 @@ pub struct RunArgs {
     /// Simulated time at which to stop, in seconds [default: the scene's]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub until: Option<f64>,
-    /// Time between two rows of the results, in seconds [default: 1/500 of the run]
+    /// Time between two rows of the results, in seconds [default: the file's, else 1/500 of the run]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub every: Option<f64>,
     /// Print the summary as JSON, and no progress
@@ -89,7 +89,7 @@ pub struct RunArgs {
 }
 
 /// Options that switch something in a scene.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct VariantArgs {
     /// Take friction in the joints into account
     #[arg(long, overrides_with = "no_friction")]

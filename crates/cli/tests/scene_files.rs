@@ -58,3 +58,35 @@ fn the_schema_is_json() {
     let schema: serde_json::Value = serde_json::from_slice(&linkdyn(&["schema"]).stdout).expect("JSON");
     assert!(schema["properties"]["joints"].is_object(), "{schema}");
 }
+
+#[test]
+fn a_file_says_how_it_is_run_and_the_command_line_overrides_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("mine.toml");
+    let run = "[run]\nuntil = 0.1\nevery = 0.05\nmethod = \"rk4\"\nstep = 1e-3\n";
+    let rod = "cylinder = { density = 7850, diameter = 0.02, along = [0.5, 0, 0] }";
+    let joint = "kind = \"revolute\"\naxis = [0, 1, 0]\nsuccessor.link = \"rod\"";
+    let text = format!("format = 1\n[links.rod]\n{rod}\n[joints.A]\n{joint}\n{run}");
+    fs::write(&file, text).expect("written");
+    let (file, out) = (
+        file.display().to_string(),
+        folder.path().join("out").display().to_string(),
+    );
+    let said_in = |words: &[&str]| {
+        let run = linkdyn(&[&["run", &file, "--json", "--out", &out], words].concat());
+        let manifest: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        (
+            manifest,
+            fs::read_to_string(folder.path().join("out/states.csv"))
+                .expect("rows")
+                .lines()
+                .count(),
+        )
+    };
+    let (manifest, lines) = said_in(&[]);
+    assert!(manifest.to_string().contains("\"method\":\"rk4\""), "{manifest}");
+    assert_eq!(lines, 1 + 3);
+    let (manifest, lines) = said_in(&["--method", "adams", "--every", "0.02"]);
+    assert!(manifest.to_string().contains("\"method\":\"adams\""), "{manifest}");
+    assert_eq!(lines, 1 + 6);
+}

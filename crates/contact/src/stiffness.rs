@@ -12,6 +12,7 @@ use crate::{Expected, ParameterError};
 /// A linear elastic, isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Material {
     /// Young's modulus E > 0 \[Pa\].

@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Along which axis of its frame a beam runs from its beginning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "file", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Along {
     /// Along +x.
@@ -78,6 +79,7 @@ impl Linkage {
     /// spring-damping element r and, while nothing is bent, the axes of that frame. Twist belongs to the turn about the axis `along`
     /// which the beam runs, bending to the two others: the section's first and second axis are the next two in cyclic order.
     pub fn flexible_link(&mut self, name: &str, beam: &Beam, along: Along) -> FlexibleLink {
+        self.flexible = true;
         let direction = along.direction();
         let mut elements: Vec<LinkHandle> = Vec::new();
         let mut joints = Vec::new();

@@ -38,7 +38,7 @@ pub use mechanism::{Mechanism, Start, State};
 pub use observation::Observation;
 pub use prescribed::{MotionFunction, PrescribedMotion};
 pub use run::{MOST_ROWS, RunError, Seen, run, run_watched};
-pub use scene::Scene;
+pub use scene::{RunSettings, Scene};
 pub use simulation::{CONTACT_SPEED_SCALE, Layout, OffTheLoop, SPEED_SCALE, Simulation, Worst};
 pub use spanning::{Edge, Role, spanning_tree};
 pub use spline::Spline;

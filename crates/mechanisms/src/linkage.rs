@@ -70,6 +70,9 @@ pub struct Linkage {
     /// Whether a joint was named by a handle of another linkage.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) foreign: bool,
+    /// Whether a link is flexible.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) flexible: bool,
     /// Drift terms, if any.
     pub baumgarte: Option<Baumgarte>,
     /// Formulation of the equations of motion.
@@ -117,6 +120,7 @@ impl Linkage {
             cuts: Vec::new(),
             loads: Vec::new(),
             foreign: false,
+            flexible: false,
             baumgarte: None,
             formulation: Formulation::default(),
             reaction_solver: ReactionSolver::default(),
@@ -250,9 +254,22 @@ impl Linkage {
         self
     }
 
+    /// Whether a link is flexible, which makes the equations of motion stiff.
+    pub fn is_flexible(&self) -> bool {
+        self.flexible
+    }
+
     /// Name of a link, for messages.
     pub(crate) fn link_name(&self, link: LinkHandle) -> String {
         link.0.map_or_else(|| "ground".to_owned(), |k| self.links[k].0.clone())
+    }
+}
+
+/// Names of a joint's coordinates or speeds: its own for a single one.
+pub(crate) fn qualified(joint: &str, local: &[&str]) -> Vec<String> {
+    match local {
+        [_] => vec![joint.to_owned()],
+        _ => local.iter().map(|name| format!("{joint}.{name}")).collect(),
     }
 }
 
@@ -261,7 +278,7 @@ impl JointItem {
     pub(crate) fn coordinates(&self) -> Vec<String> {
         self.coordinate_names
             .clone()
-            .unwrap_or_else(|| self.qualified(self.joint.coordinate_names()))
+            .unwrap_or_else(|| qualified(&self.name, self.joint.coordinate_names()))
     }
 
     /// Speeds have the names of their coordinates wherever they are their rates.
@@ -269,14 +286,7 @@ impl JointItem {
         if self.joint.coordinates() == self.joint.speeds() {
             self.coordinates()
         } else {
-            self.qualified(self.joint.speed_names())
-        }
-    }
-
-    fn qualified(&self, local: &[&str]) -> Vec<String> {
-        match local {
-            [_] => vec![self.name.clone()],
-            _ => local.iter().map(|name| format!("{}.{name}", self.name)).collect(),
+            qualified(&self.name, self.joint.speed_names())
         }
     }
 

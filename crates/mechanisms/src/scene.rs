@@ -23,4 +23,22 @@ pub struct Scene {
     pub crank: String,
     /// Coordinate whose motion is the result, if one is.
     pub output: Option<String>,
+    /// How it is integrated unless its user says otherwise.
+    pub settings: RunSettings,
+}
+
+/// How a scene is integrated, as far as it says so itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct RunSettings {
+    /// Time between two rows of the results \[s\].
+    pub every: Option<f64>,
+    /// Name of the integration method.
+    pub method: Option<String>,
+    /// Relative tolerance.
+    pub rtol: Option<f64>,
+    /// Absolute tolerance.
+    pub atol: Option<f64>,
+    /// Fixed step \[s\].
+    pub step: Option<f64>,
 }

@@ -11,6 +11,8 @@ pub struct Edge {
     pub freedoms: usize,
     /// Whether the joint must be cut (or carried) as its user says.
     pub cut: Option<bool>,
+    /// Whether it can carry its predecessor from the successor's side.
+    pub backwards: bool,
 }
 
 /// What becomes of a joint.
@@ -33,6 +35,13 @@ pub enum Role {
 pub fn spanning_tree(links: usize, joints: &[Edge]) -> Vec<Role> {
     let mut roles = vec![Role::Cut; joints.len()];
     let mut depths: Vec<Option<usize>> = vec![None; links];
+    // Links that a joint shall carry that cannot but carry its successor.
+    let bound = |link: usize, k: usize| {
+        let one_way = |(other, joint): (usize, &Edge)| {
+            other != k && !joint.backwards && joint.cut == Some(false) && joint.successor == Some(link)
+        };
+        joints.iter().enumerate().any(one_way)
+    };
     let depth = |depths: &[Option<usize>], link: Option<usize>| match link {
         None => Some(0),
         Some(k) => depths.get(k).copied().flatten(),
@@ -47,9 +56,10 @@ pub fn spanning_tree(links: usize, joints: &[Edge]) -> Vec<Role> {
                 (None, Some(depth)) => (Role::CarriesBackwards, depth, joint.predecessor?),
                 _ => return None,
             };
-            (link < links).then_some(((joint.cut.is_none(), joint.freedoms, depth, k), role, link))
+            let last = bound(link, k) || (role == Role::CarriesBackwards && !joint.backwards);
+            (link < links).then_some(((last, joint.cut.is_none(), joint.freedoms, depth, k), role, link))
         });
-        let Some(((_, _, depth, k), role, link)) = next.min_by_key(|&(rank, ..)| rank) else {
+        let Some(((.., depth, k), role, link)) = next.min_by_key(|&(rank, ..)| rank) else {
             return roles;
         };
         roles[k] = role;

@@ -3,11 +3,12 @@
 use linkdyn_mechanisms::integrators::{
     Adams, Auto, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Radau5, Rk4, Rodas, Settings,
 };
-use linkdyn_mechanisms::{Simulation, Switching};
+use linkdyn_mechanisms::{RunSettings, Simulation, Switching};
 use serde::Serialize;
 
 use crate::args::RunArgs;
 use crate::errors::CliError;
+use crate::run::Prepared;
 
 /// A method with all its settings, defaults filled in.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,12 +51,25 @@ pub(crate) const STEP: f64 = 1e-4;
 /// Fixed step of the paper on clearance \[s\].
 pub(crate) const PUBLISHED_STEP: f64 = 5e-6;
 
+/// The command line filled up with what the scene says. A method on the command line comes with its own tolerances and steps.
+fn with_settings(args: &RunArgs, settings: &RunSettings) -> RunArgs {
+    let mut args = args.clone();
+    if args.method.is_none() && !args.as_published {
+        args.method.clone_from(&settings.method);
+        args.rtol = args.rtol.or(settings.rtol);
+        args.atol = args.atol.or(settings.atol);
+        args.step = args.step.or(settings.step);
+    }
+    args
+}
+
 impl Plan {
-    /// What the command line asks for.
+    /// What the command line asks for, and where it says nothing the scene.
     ///
     /// # Errors
     /// Unknown methods, and options that do not go with the method.
-    pub fn new(args: &RunArgs) -> Result<Self, CliError> {
+    pub(crate) fn new(args: &RunArgs, prepared: &Prepared) -> Result<Self, CliError> {
+        let args = &with_settings(args, &prepared.scene.settings);
         let method = match (&args.method, args.as_published) {
             (None, true) => "rk4",
             (None, false) => "auto",
@@ -93,12 +107,13 @@ impl Plan {
         let clearance = args
             .variant
             .clearance
-            .map(|_| args.variant.clearance_size.unwrap_or(CLEARANCE));
+            .map(|_| args.variant.clearance_size.unwrap_or(CLEARANCE))
+            .or_else(|| prepared.mechanism.clearances().reduce(f64::min));
         let (usual, loosest) = match clearance {
             Some(size) => (CONTACT_TOLERANCE * size, CONTACT_LOOSEST * size),
             // Elastic links are stiff.
             None if ["radau5", "bdf", "rodas"].contains(&method)
-                || (method == "auto" && args.variant.flexible.is_some()) =>
+                || (method == "auto" && prepared.scene.linkage.is_flexible()) =>
             {
                 (STIFF_TOLERANCE, LOOSEST)
             }

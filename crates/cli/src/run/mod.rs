@@ -41,11 +41,12 @@ pub(crate) struct Prepared {
 /// # Errors
 /// Wrong usage, a scene that cannot start, a run that ends early (its rows are written), a folder that cannot be written.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
-    let plan = Plan::new(args)?;
     let variant = Variant::new(&args.variant, args.as_published);
     let prepared = prepare(&args.scene, &variant, args.friction_sweeps, args.formulation)?;
+    let plan = Plan::new(args, &prepared)?;
     let until = args.until.unwrap_or(prepared.scene.until);
-    let grid = (until, args.every.unwrap_or(until / ROWS));
+    let every = args.every.or(prepared.scene.settings.every);
+    let grid = (until, every.unwrap_or(until / ROWS));
     if grid.0 / grid.1 > MOST_ROWS as f64 {
         let message = format!(
             "--every {} s until {} s makes more than {MOST_ROWS} rows",

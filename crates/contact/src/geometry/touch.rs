@@ -89,6 +89,7 @@ impl Touch {
 /// Where on the two bodies the contact force acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum ForcePoint {
     /// On each body at its own surface (Augustynek and Urbaś). The points differ by the depth, which leaves a couple

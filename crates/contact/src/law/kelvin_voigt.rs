@@ -14,6 +14,7 @@ use crate::{Expected, ParameterError};
 /// The contact lasts twice as long as the way to the greatest depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct KelvinVoigt {
     /// K > 0 \[N/m\].

@@ -4,6 +4,7 @@ use crate::{Expected, ParameterError, impact};
 /// How a [`NormalLaw`] loses energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
 pub enum Damping {
     /// Not at all: Hertz's law, ξ = 0.

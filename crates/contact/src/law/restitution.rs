@@ -23,6 +23,7 @@ use std::ops::RangeInclusive;
 /// | `Exact` | root of ξ (1 + ε) = ln((1 + ξ)/(1 - ξ ε)) | [`impact`] |
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum RestitutionLaw {
     /// Made for ε near one; valid from 0.748.

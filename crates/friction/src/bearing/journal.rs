@@ -4,6 +4,7 @@ use crate::{Expected, ParameterError};
 /// A surface on which a bearing slides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Surface {
     /// Diameter d > 0 \[m\].
@@ -31,6 +32,7 @@ pub struct Surface {
 /// [`sliding_speeds`](Self::sliding_speeds) gives the speeds in m/s instead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct JournalBearing {
     /// Distance a > 0 \[m\] between the middles of the journals A and B.

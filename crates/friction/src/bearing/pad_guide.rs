@@ -20,6 +20,7 @@ use crate::{Expected, ParameterError};
 /// though one face may carry both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PadGuide {
     /// Distance a > 0 \[m\] between the middles of the pads.

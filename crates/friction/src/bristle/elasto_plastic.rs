@@ -15,6 +15,7 @@ use std::f64::consts::PI;
 /// where its LuGre is, for α ≤ 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ElastoPlastic {
     /// The LuGre model that remains for α = 1.

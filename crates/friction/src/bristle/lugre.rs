@@ -21,6 +21,7 @@ use crate::{Expected, ParameterError};
 /// N s/m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LuGre {
     /// Static coefficient µ_s ≥ µ_k \[-\].
@@ -43,6 +44,7 @@ pub struct LuGre {
 /// What becomes of the bristle damping σ₁ at higher slip speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Guard {
     /// σ₁ stays constant, as in the original model.

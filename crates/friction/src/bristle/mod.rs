@@ -105,6 +105,7 @@ pub trait BristleModel: Debug + Send + Sync {
 /// Any bristle model, for choices made at run time.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Bristle {
     /// LuGre, with or without a guard.

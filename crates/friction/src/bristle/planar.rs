@@ -14,6 +14,7 @@ pub struct PlanarBristlePoint {
 /// Deflection \[m\] that a bristle gets where a contact is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum BristleStart {
     /// None. With constant bristle damping the coefficient then begins at σ₁ v.

@@ -11,6 +11,7 @@ use crate::{Expected, ParameterError};
 /// continuous with its slope; the second derivative jumps at |v| = v_r.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Cubic {
     /// Speed v_r > 0 \[m/s or rad/s\] from which χ is constant; the slope at zero is 3/(2 v_r).

@@ -12,6 +12,7 @@ use crate::{Expected, ParameterError};
 /// derivative jumps there. |χ| < 1, and χ(v_k) = 0.95 for k = 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Exponential {
     /// Speed v_k > 0 \[m/s or rad/s\] by which χ has grown to 1 - exp(-k).

@@ -11,6 +11,7 @@ use crate::{Expected, ParameterError};
 /// v = v_r artanh(T/(µ₀ N)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct HyperbolicTangent {
     /// Speed v_r > 0 \[m/s or rad/s\]; the slope at zero is 1/v_r.

@@ -11,6 +11,7 @@ use crate::{Expected, ParameterError};
 /// A sticking load creeps with v = v_r T/(µ₀ N).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PiecewiseLinear {
     /// Speed v_r > 0 \[m/s or rad/s\] from which χ is constant.

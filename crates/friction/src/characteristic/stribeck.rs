@@ -14,6 +14,7 @@ use crate::{Expected, ParameterError};
 /// about 1 + 0.9 (ρ - 1). It does not hold a load at rest: for that take a bristle model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Stribeck {
     /// Ratio ρ = µ_s/µ_k ≥ 1 \[-\] of the static to the kinetic coefficient.

@@ -7,6 +7,7 @@ use crate::{Expected, ParameterError};
 /// damper in the joint, not a characteristic. The only one without a bound; use it in a [`Sum`](crate::Sum).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Viscous {
     /// Growth c ≥ 0 per unit of slip \[s/m or s/rad\].

@@ -7,7 +7,7 @@
 use crate::drive::Drive;
 use crate::linkage::{Linkage, Mount};
 use crate::mechanism::Start;
-use crate::scene::Scene;
+use crate::scene::{RunSettings, Scene};
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_friction::{Exponential, JournalBearing, Surface};
 use linkdyn_kinematics::{Joint, Pose};
@@ -117,6 +117,7 @@ pub fn rsrrr(variant: &Rsrrr) -> Scene {
         reactions: true,
         crank: "psi11".into(),
         output: None,
+        settings: RunSettings::default(),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::drive::Drive;
 use crate::flexible::Along;
 use crate::linkage::{Linkage, Mount};
 use crate::mechanism::Start;
-use crate::scene::Scene;
+use crate::scene::{RunSettings, Scene};
 use linkdyn_contact::{Damping, Fit, ForcePoint, NormalLaw, RestitutionLaw, ball_in_socket};
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_friction::{Bristle, BristleStart, Guard, LuGre};
@@ -209,6 +209,7 @@ pub fn rsup(variant: &Rsup) -> Result<Scene, RsupError> {
         reactions: false,
         crank: "psi11".into(),
         output: Some("z21".into()),
+        settings: RunSettings::default(),
     })
 }
 

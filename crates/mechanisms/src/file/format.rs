@@ -1,5 +1,9 @@
 //! The format of scene files. These structs are the one source of what is read, of the JSON Schema and of its descriptions.
 
+use super::beam::BeamItem;
+use super::clearance::ClearanceItem;
+use super::friction::FrictionItem;
+use super::prescribed::PrescribedItem;
 use super::quantity::Quantity;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -33,7 +37,7 @@ fn earth() -> [f64; 3] {
     [0.0, 0.0, -9.81]
 }
 
-/// A rigid link: `cylinder`, `box`, or `mass` with `centre` and `inertia`.
+/// A link: `cylinder`, `box`, or `mass` with `centre` and `inertia`; or flexible as a `beam`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinkItem {
@@ -48,6 +52,8 @@ pub struct LinkItem {
     /// A solid box with edges along the axes of the link's frame, in place of mass, centre and inertia.
     #[serde(rename = "box")]
     pub cuboid: Option<CuboidItem>,
+    /// A flexible beam from the origin of the link's frame.
+    pub beam: Option<BeamItem>,
 }
 
 /// A solid cylinder.
@@ -103,10 +109,12 @@ pub struct JointItem {
     /// Springs with dampers, one for each coordinate.
     #[serde(default)]
     pub springs: Vec<SpringItem>,
-    /// Friction in a revolute joint.
+    /// Friction of a revolute or prismatic joint that carries a link.
     pub friction: Option<FrictionItem>,
     /// Motion that its one coordinate is made to follow.
     pub prescribed: Option<PrescribedItem>,
+    /// Clearance of a revolute joint, which is cut then.
+    pub clearance: Option<ClearanceItem>,
 }
 
 /// Kinds of joints.
@@ -141,6 +149,9 @@ pub enum Kind {
 pub struct MountItem {
     /// Name of the link; `ground` unless given.
     pub link: Option<String>,
+    /// Whether the joint sits at the end of a beam, in a frame with the beam's axes and its origin there; at its beginning unless given.
+    #[serde(default)]
+    pub end: bool,
     /// Origin of the joint's frame in the link's frame \[m\]; zero unless given.
     #[serde(default)]
     pub point: [f64; 3],
@@ -210,40 +221,6 @@ pub enum DriveItem {
     },
 }
 
-/// A prescribed motion.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "snake_case")]
-pub enum PrescribedItem {
-    /// `c_0 + c_1 t + c_2 t^2 + ...`
-    Polynomial {
-        /// Coefficients, the constant first \[rad, m and per s to the power\].
-        coefficients: Vec<f64>,
-    },
-    /// `mean + amplitude * sin(2 pi frequency t + phase)`.
-    Harmonic {
-        /// Middle position \[rad, m\]; zero unless given.
-        #[serde(default)]
-        mean: Quantity,
-        /// Amplitude \[rad, m\].
-        amplitude: Quantity,
-        /// Frequency \[Hz\].
-        frequency: f64,
-        /// Phase at t = 0 \[rad\]; zero unless given.
-        #[serde(default)]
-        phase: Quantity,
-    },
-    /// A natural spline through positions over time, straight on before the first and behind the last.
-    Table {
-        /// Time \[s\] and position \[rad, m\] of each point, times rising.
-        points: Vec<[f64; 2]>,
-    },
-    /// A natural spline through speeds over time, constant before the first and behind the last; from wherever the joint starts.
-    Speeds {
-        /// Time \[s\] and speed \[rad/s, m/s\] of each point, times rising.
-        points: Vec<[f64; 2]>,
-    },
-}
-
 /// A spring with a damper, relaxed where the coordinate is zero.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -254,50 +231,6 @@ pub struct SpringItem {
     /// Damping \[N m s/rad, N s/m\].
     #[serde(default)]
     pub damping: f64,
-}
-
-/// Friction of a joint.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FrictionItem {
-    /// Coefficient against speed, as a share of the full coefficient: the smooth exponential law.
-    pub exponential: ExponentialItem,
-    /// The journal bearing that turns the joint's reaction into friction.
-    pub journal: JournalItem,
-}
-
-/// The exponential characteristic `1 - exp(-steepness |v|/reference_speed)`.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ExponentialItem {
-    /// Reference speed \[rad/s\].
-    pub reference_speed: f64,
-    /// Steepness \[-\].
-    pub steepness: f64,
-}
-
-/// A journal bearing: two journals and a face.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JournalItem {
-    /// Distance of the two journals \[m\].
-    pub spacing: f64,
-    /// One journal.
-    pub surface_a: SurfaceItem,
-    /// The other journal.
-    pub surface_b: SurfaceItem,
-    /// The face that takes the axial force.
-    pub face: SurfaceItem,
-}
-
-/// A surface of a bearing.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceItem {
-    /// Diameter \[m\].
-    pub diameter: f64,
-    /// Coefficient of friction \[-\].
-    pub coefficient: f64,
 }
 
 /// A guess of the coordinates, from which the loops are closed.
@@ -327,6 +260,40 @@ pub struct RunItem {
     pub crank: Option<String>,
     /// Coordinate whose motion is the result, if one is.
     pub output: Option<String>,
+    /// Time between two rows of the results \[s\]; 1/500 of the run unless given.
+    pub every: Option<f64>,
+    /// Integration method; `auto` unless given.
+    pub method: Option<MethodItem>,
+    /// Relative tolerance of methods with error control; with clearance the absolute one alone counts.
+    pub rtol: Option<f64>,
+    /// Absolute tolerance of methods with error control; that of `rtol` unless given.
+    pub atol: Option<f64>,
+    /// Fixed step of `rk4` and `newmark` \[s\].
+    pub step: Option<f64>,
+}
+
+/// Integration methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MethodItem {
+    /// Adams or Radau5, as the run finds them cheaper.
+    Auto,
+    /// Adams' method of variable order and step.
+    Adams,
+    /// Explicit Runge-Kutta method of order 8.
+    Dop853,
+    /// Explicit Runge-Kutta method of order 5.
+    Dopri5,
+    /// Implicit Runge-Kutta method of order 5, for stiff scenes.
+    Radau5,
+    /// Backward differentiation, for stiff scenes.
+    Bdf,
+    /// Rosenbrock method of order 5, for stiff scenes.
+    Rodas,
+    /// The classical Runge-Kutta method with fixed step.
+    Rk4,
+    /// Newmark's method with fixed step.
+    Newmark,
 }
 
 impl Default for RunItem {
@@ -336,6 +303,11 @@ impl Default for RunItem {
             reactions: false,
             crank: None,
             output: None,
+            every: None,
+            method: None,
+            rtol: None,
+            atol: None,
+            step: None,
         }
     }
 }

@@ -1,52 +1,128 @@
-//! The joints of a scene file, and what sits in them.
+//! The joints of a scene file: what they are, where they sit, which of them carry links.
 
-use super::fault::{Faults, nearest};
-use super::format::{DriveItem, FrictionItem, JointItem, Kind, MountItem, PrescribedItem, SceneFile, SurfaceItem};
-use crate::drive::Drive;
-use crate::linkage::{LinkHandle, Linkage, Mount};
-use crate::prescribed::PrescribedMotion;
+use super::clearance;
+use super::fault::{Faults, nearest, unknown};
+use super::format::{JointItem, Kind, MountItem, SceneFile};
+use super::links::Links;
+use super::loads::{self, Sitting};
+use super::names::unread;
+use crate::clearance::Clearance;
+use crate::linkage::{Linkage, Mount};
 use crate::spanning::{Edge, Role, spanning_tree};
-use crate::spline::Spline;
-use crate::spring::Spring;
-use linkdyn_friction::{BearingModel, Characteristic, Exponential, JournalBearing, Surface};
 use linkdyn_kinematics::{Joint, Pose};
 use nalgebra::{Rotation3, Unit, Vector3};
+use std::collections::HashSet;
 use std::f64::consts::TAU;
 
-/// Adds all joints, in the order of the file.
-pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) {
+/// A joint as the file has it.
+struct Read<'f> {
+    name: &'f str,
+    item: &'f JointItem,
+    joint: Joint,
+    predecessor: Mount,
+    successor: Mount,
+    sitting: Sitting,
+    clearance: Option<Clearance>,
+}
+
+/// Adds all joints, in the order of the file. Which of them are cut is judged only where all could be read. The result are the names of
+/// those that are.
+pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Vec<String> {
     let mut read = Vec::new();
+    let mut coordinates = HashSet::new();
     for (name, item) in &file.joints {
-        let joint = joint(name, item, faults);
-        let predecessor = mount(file, name, "predecessor", &item.predecessor, faults);
-        let successor = mount(file, name, "successor", &item.successor, faults);
+        let mut joint = if unread(name, faults) {
+            None
+        } else {
+            joint(name, item, faults)
+        };
+        let predecessor = mount(links, name, "predecessor", &item.predecessor, faults);
+        let successor = mount(links, name, "successor", &item.successor, faults);
         if let (Some(one), Some(two)) = (predecessor, successor)
             && one.link == two.link
         {
-            faults.add(
-                &["joints", name],
-                "connects a link to itself; give predecessor and successor different links",
-            );
+            let message = "has the same link as the predecessor; a joint connects two";
+            faults.add(&["joints", name, "successor"], message);
+            joint = None;
         }
-        read.push((name, item, joint.zip(predecessor.zip(successor))));
+        let sitting = loads::read(name, item, faults);
+        let clearance = item
+            .clearance
+            .as_ref()
+            .and_then(|clearance| clearance::read(name, clearance, faults));
+        if item.clearance.is_some() && !unread(name, faults) && item.kind != Kind::Revolute {
+            let message = "goes with revolute joints only";
+            faults.add(&["joints", name, "clearance"], message);
+        }
+        if item.clearance.is_some() && item.cut == Some(false) {
+            let message = "a joint with clearance is cut; leave `cut` out";
+            faults.add(&["joints", name, "cut"], message);
+        }
+        for coordinate in item.coordinates.iter().flatten() {
+            if !coordinates.insert(coordinate) {
+                let message = format!("the name `{coordinate}` is used twice");
+                faults.add(&["joints", name, "coordinates"], message);
+            }
+        }
+        if let (Some(joint), Some(predecessor), Some(successor)) = (joint, predecessor, successor) {
+            read.push(Read {
+                name,
+                item,
+                joint,
+                predecessor,
+                successor,
+                sitting,
+                clearance,
+            });
+        }
     }
-    let read: Vec<_> = read
-        .into_iter()
-        .filter_map(|(name, item, parts)| parts.map(|(joint, (one, two))| (name, item, joint, one, two)))
-        .collect();
-    let edges: Vec<Edge> = read
+    if read.len() < file.joints.len() || faults.lacks(&["joints"]) || faults.lacks_all(&["links"]) {
+        return Vec::new();
+    }
+    // The joints in beams, which stand in the linkage already, carry as they are.
+    let inner = linkage.joints.iter().map(|joint| Edge {
+        predecessor: joint.predecessor.link.0,
+        successor: joint.successor.link.0,
+        freedoms: joint.joint.speeds(),
+        cut: Some(false),
+        backwards: false,
+    });
+    let outer = read.iter().map(|read| {
+        let told = read.item.cut.or(sits_on_coordinates(read.item).map(|_| false));
+        Edge {
+            predecessor: read.predecessor.link.0,
+            successor: read.successor.link.0,
+            freedoms: read.joint.speeds(),
+            cut: if read.item.clearance.is_some() {
+                Some(true)
+            } else {
+                told
+            },
+            backwards: backwards(read.joint).is_some(),
+        }
+    });
+    let edges: Vec<Edge> = inner.chain(outer).collect();
+    let mut roles = spanning_tree(linkage.links.len(), &edges);
+    connected(links, &edges, &roles, faults);
+    let inner = linkage.joints.len();
+    for (joint, _) in linkage
+        .joints
         .iter()
-        .map(|(_, item, joint, one, two)| Edge {
-            predecessor: one.link.0,
-            successor: two.link.0,
-            freedoms: joint.speeds(),
-            cut: item.cut.or(sits_on_coordinates(item).map(|_| false)),
-        })
-        .collect();
-    for ((name, item, joint, one, two), role) in read.into_iter().zip(spanning_tree(file.links.len(), &edges)) {
+        .zip(&roles)
+        .filter(|(_, role)| **role != Role::Carries)
+    {
+        let (link, _) = joint.name.rsplit_once('.').unwrap_or((&joint.name, ""));
+        let message = "its beginning must hang nearer to the ground than its end; let the beam run the other way";
+        faults.add(&["links", link, "beam"], message);
+    }
+    roles.drain(..inner);
+    let mut cut = Vec::new();
+    for (read, role) in read.into_iter().zip(roles) {
+        let (name, item) = (read.name, read.item);
+        let (one, two) = (read.predecessor, read.successor);
         match role {
             Role::Cut => {
-                if item.cut == Some(false) {
+                if item.cut == Some(false) && item.clearance.is_none() {
                     faults.add(
                         &["joints", name, "cut"],
                         "both links are carried by other joints; leave `cut` out or cut another joint",
@@ -58,16 +134,52 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
                         "goes with joints that carry a link; this one is cut, so cut another joint of its loop",
                     );
                 }
-                linkage.cut(name, joint, one, two);
+                let joint = linkage.cut(name, read.joint, one, two);
+                if let Some(clearance) = read.clearance {
+                    linkage.clearance(joint, clearance);
+                }
+                cut.push(name.to_owned());
             }
-            Role::Carries => carry(name, item, (joint, one, two), linkage, faults),
-            Role::CarriesBackwards => match backwards(joint) {
-                Some(joint) => carry(name, item, (joint, two, one), linkage, faults),
+            Role::Carries => {
+                let joint = linkage.joint(name, read.joint, one, two);
+                read.sitting.put(joint, linkage);
+            }
+            Role::CarriesBackwards => match backwards(read.joint) {
+                Some((kind, exchanged)) => {
+                    let joint = linkage.joint(name, kind, two, one);
+                    let mut sitting = read.sitting;
+                    if exchanged {
+                        sitting.exchange(name, item.kind);
+                    }
+                    sitting.put(joint, linkage);
+                }
                 None => {
-                    let message = "must carry its successor; exchange predecessor and successor, or set `cut = true`";
-                    faults.add(&["joints", name], message);
+                    let message = "hangs nearer to the ground than the predecessor, which joints of this kind cannot carry; exchange \
+                                   predecessor and successor";
+                    faults.add(&["joints", name, "successor"], message);
                 }
             },
+        }
+    }
+    cut
+}
+
+/// Refuses links that hang on nothing.
+fn connected(links: &Links, edges: &[Edge], roles: &[Role], faults: &mut Faults<'_>) {
+    let carried = edges.iter().zip(roles).filter_map(|(edge, role)| match role {
+        Role::Carries => edge.successor,
+        Role::CarriesBackwards => edge.predecessor,
+        Role::Cut => None,
+    });
+    let carried: HashSet<usize> = carried.collect();
+    for name in links.names() {
+        if links
+            .find(name)
+            .and_then(|link| link.0)
+            .is_some_and(|link| !carried.contains(&link))
+        {
+            let message = "no chain of joints that are not cut leads from it to the ground";
+            faults.add(&["links", name], message);
         }
     }
 }
@@ -84,21 +196,26 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
     there.into_iter().find_map(|(there, key)| there.then_some(key))
 }
 
-/// The same joint with exchanged sides and the same coordinates, where there is one.
-fn backwards(joint: Joint) -> Option<Joint> {
+/// The same joint with exchanged sides and coordinates that mean the same, where there is one, and whether their order is the opposite.
+/// Coordinates of balls, planes and free links would have to say how the predecessor moves against the successor.
+fn backwards(joint: Joint) -> Option<(Joint, bool)> {
     match joint {
-        Joint::Revolute { axis } => Some(Joint::Revolute { axis: -axis }),
-        Joint::Prismatic { axis } => Some(Joint::Prismatic { axis: -axis }),
-        Joint::Cylindrical { axis } => Some(Joint::Cylindrical { axis: -axis }),
-        Joint::Screw { axis, pitch } => Some(Joint::Screw { axis: -axis, pitch }),
-        Joint::Fixed => Some(Joint::Fixed),
+        Joint::Revolute { axis } => Some((Joint::Revolute { axis: -axis }, false)),
+        Joint::Prismatic { axis } => Some((Joint::Prismatic { axis: -axis }, false)),
+        Joint::Cylindrical { axis } => Some((Joint::Cylindrical { axis: -axis }, false)),
+        Joint::Screw { axis, pitch } => Some((Joint::Screw { axis: -axis, pitch }, false)),
+        Joint::Universal { first, second } => {
+            let (first, second) = (-second, -first);
+            Some((Joint::Universal { first, second }, true))
+        }
+        Joint::Fixed => Some((Joint::Fixed, false)),
         _ => None,
     }
 }
 
 fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint> {
-    let mut axis = |key: &str, given: Option<[f64; 3]>, default: Vector3<f64>| {
-        let vector = given.map_or(default, Vector3::from);
+    let mut axis = |key: &str, given: Option<[f64; 3]>, default: Unit<Vector3<f64>>| {
+        let vector = given.map_or(*default, Vector3::from);
         let sound = vector.iter().all(|x| x.is_finite());
         let unit = Unit::try_new(vector, f64::MIN_POSITIVE).filter(|unit| sound && unit.iter().all(|x| x.is_finite()));
         if unit.is_none() {
@@ -106,15 +223,9 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
         }
         unit
     };
-    let second = if item.kind == Kind::Planar {
-        Vector3::x()
-    } else {
-        Vector3::y()
-    };
-    let (first, second) = (
-        axis("axis", item.axis, Vector3::z())?,
-        axis("second_axis", item.second_axis, second)?,
-    );
+    let (first, second) = default_axes(item.kind);
+    let first = axis("axis", item.axis, first);
+    let second = axis("second_axis", item.second_axis, second);
     match item.lead {
         Some(lead) if item.kind != Kind::Screw || !lead.is_finite() => {
             let message =
@@ -126,24 +237,7 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
         }
         _ => {}
     }
-    let joint = match item.kind {
-        Kind::Fixed => Joint::Fixed,
-        Kind::Revolute => Joint::Revolute { axis: first },
-        Kind::Prismatic => Joint::Prismatic { axis: first },
-        Kind::Screw => Joint::Screw {
-            axis: first,
-            pitch: item.lead.unwrap_or_default() / TAU,
-        },
-        Kind::Cylindrical => Joint::Cylindrical { axis: first },
-        Kind::Universal => Joint::Universal { first, second },
-        Kind::Spherical => Joint::Spherical,
-        Kind::SphericalZyx => Joint::SphericalZyx,
-        Kind::Planar => Joint::Planar {
-            along: second,
-            normal: first,
-        },
-        Kind::Free => Joint::Free,
-    };
+    let joint = of_kind(item.kind, first?, second?, item.lead.unwrap_or_default());
     let no_axis = matches!(
         item.kind,
         Kind::Fixed | Kind::Spherical | Kind::SphericalZyx | Kind::Free
@@ -163,31 +257,62 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
     if joint.validate().is_err() {
         let message =
             "the axes of a universal joint must not be parallel, those of a planar one must be at right angles";
-        faults.add(&["joints", name], message);
+        let key = if item.second_axis.is_some() {
+            "second_axis"
+        } else {
+            "axis"
+        };
+        faults.add(&["joints", name, key], message);
         return None;
     }
     Some(joint)
 }
 
-fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
-    let link = match item.link.as_deref() {
-        None | Some("ground") => Linkage::GROUND,
-        Some(link) => match file.links.get_index_of(link) {
-            Some(k) => LinkHandle(Some(k)),
-            None => {
-                let known = file.links.keys().map(String::as_str).chain(["ground"]);
-                let hint = match nearest(link, known.clone()) {
-                    Some(word) => format!("did you mean `{word}`?"),
-                    None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
-                };
-                faults.add(
-                    &["joints", name, side, "link"],
-                    format!("there is no link `{link}`; {hint}"),
-                );
-                return None;
-            }
-        },
+/// First and second axis of joints that give none.
+fn default_axes(kind: Kind) -> (Unit<Vector3<f64>>, Unit<Vector3<f64>>) {
+    let second = if kind == Kind::Planar {
+        Vector3::x_axis()
+    } else {
+        Vector3::y_axis()
     };
+    (Vector3::z_axis(), second)
+}
+
+/// A joint of a kind.
+pub(super) fn any_of_kind(kind: Kind) -> Joint {
+    let (first, second) = default_axes(kind);
+    of_kind(kind, first, second, 0.0)
+}
+
+fn of_kind(kind: Kind, first: Unit<Vector3<f64>>, second: Unit<Vector3<f64>>, lead: f64) -> Joint {
+    match kind {
+        Kind::Fixed => Joint::Fixed,
+        Kind::Revolute => Joint::Revolute { axis: first },
+        Kind::Prismatic => Joint::Prismatic { axis: first },
+        Kind::Screw => Joint::Screw {
+            axis: first,
+            pitch: lead / TAU,
+        },
+        Kind::Cylindrical => Joint::Cylindrical { axis: first },
+        Kind::Universal => Joint::Universal { first, second },
+        Kind::Spherical => Joint::Spherical,
+        Kind::SphericalZyx => Joint::SphericalZyx,
+        Kind::Planar => Joint::Planar {
+            along: second,
+            normal: first,
+        },
+        Kind::Free => Joint::Free,
+    }
+}
+
+fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
+    let link_name = item.link.as_deref().unwrap_or("ground");
+    let link = links.find(link_name);
+    if link.is_none() && !faults.lacks_all(&["links"]) {
+        let known = || links.names().chain(["ground"]);
+        let message = unknown("link", link_name, nearest(link_name, known()), known());
+        faults.add(&["joints", name, side, "link"], message);
+    }
     let pose = match (item.rotation, item.turn) {
         (Some(rows), None) => Pose::from_rows(rows, item.point),
         (None, None) => Pose::translation(item.point[0], item.point[1], item.point[2]),
@@ -219,139 +344,12 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
         faults.add(&["joints", name, side], message);
         return None;
     }
-    Some(Mount { link, pose })
-}
-
-fn carry(name: &str, item: &JointItem, parts: (Joint, Mount, Mount), linkage: &mut Linkage, faults: &mut Faults<'_>) {
-    let (kind, predecessor, successor) = parts;
-    let freedoms = kind.coordinates();
-    let joint = linkage.joint(name, kind, predecessor, successor);
-    if let Some(names) = &item.coordinates {
-        if names.len() == freedoms {
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            linkage.coordinate_names(joint, &names);
-        } else {
-            let message = format!("the joint has {freedoms} coordinates, {} names were given", names.len());
-            faults.add(&["joints", name, "coordinates"], message);
-        }
+    if !item.end {
+        return Some(Mount { link: link?, pose });
     }
-    for item in &item.drives {
-        let drive = drive(item);
-        if let Some((parameter, value, expected)) = drive.fault() {
-            faults.add(
-                &["joints", name, "drives"],
-                format!("{parameter} = {value} must be {expected}"),
-            );
-        }
-        linkage.drive(joint, drive);
+    let mount = links.at_end(link_name, pose);
+    if mount.is_none() && link.is_some() && !faults.lacks(&["links", link_name]) {
+        faults.add(&["joints", name, side, "end"], "only a beam has an end");
     }
-    let springs: Vec<Spring> = item
-        .springs
-        .iter()
-        .map(|spring| Spring {
-            stiffness: spring.stiffness,
-            damping: spring.damping,
-        })
-        .collect();
-    for (parameter, value, expected) in springs.iter().filter_map(Spring::fault) {
-        faults.add(
-            &["joints", name, "springs"],
-            format!("{parameter} = {value} must be {expected}"),
-        );
-    }
-    if !springs.is_empty() {
-        linkage.springs(joint, &springs);
-    }
-    if let Some(item) = &item.prescribed {
-        let motion = prescribed(item);
-        if let Some((parameter, value, expected)) = motion.fault() {
-            let message = format!("{parameter} = {value} must be {expected}");
-            faults.add(&["joints", name, "prescribed"], message);
-        }
-        linkage.prescribe(joint, motion);
-    }
-    if let Some(item) = &item.friction {
-        let (characteristic, bearing) = friction(item);
-        if let Err(error) = characteristic.validate().and_then(|()| bearing.validate()) {
-            faults.add(&["joints", name, "friction"], error.to_string());
-        }
-        linkage.friction(joint, characteristic, bearing);
-    }
-}
-
-fn drive(item: &DriveItem) -> Drive {
-    match *item {
-        DriveItem::Ramp { torque, rise_time } => Drive::Ramp { torque, rise_time },
-        DriveItem::Constant { torque } => Drive::Constant { torque },
-        DriveItem::Harmonic {
-            amplitude,
-            frequency,
-            phase,
-        } => Drive::Harmonic {
-            amplitude,
-            frequency,
-            phase,
-        },
-        DriveItem::Table { ref points, monotone } => {
-            let nodes: Vec<(f64, f64)> = points.iter().map(|&[t, value]| (t, value)).collect();
-            let through = if monotone { Spline::monotone } else { Spline::natural };
-            Drive::Table {
-                spline: through(&nodes),
-            }
-        }
-        DriveItem::QuadraticResistance {
-            torque,
-            reference_speed,
-        } => Drive::QuadraticResistance {
-            torque,
-            reference_speed,
-        },
-        DriveItem::Resistance {
-            torque,
-            reference_speed,
-        } => Drive::Resistance {
-            torque,
-            reference_speed,
-        },
-    }
-}
-
-fn prescribed(item: &PrescribedItem) -> PrescribedMotion {
-    let spline = |points: &[[f64; 2]]| Spline::natural(&points.iter().map(|&[t, x]| (t, x)).collect::<Vec<_>>());
-    match item {
-        PrescribedItem::Polynomial { coefficients } => PrescribedMotion::Polynomial {
-            coefficients: coefficients.clone(),
-        },
-        PrescribedItem::Harmonic {
-            mean,
-            amplitude,
-            frequency,
-            phase,
-        } => PrescribedMotion::Harmonic {
-            mean: mean.0,
-            amplitude: amplitude.0,
-            frequency: *frequency,
-            phase: phase.0,
-        },
-        PrescribedItem::Table { points } => PrescribedMotion::Table { spline: spline(points) },
-        PrescribedItem::Speeds { points } => PrescribedMotion::Speeds { spline: spline(points) },
-    }
-}
-
-fn friction(item: &FrictionItem) -> (Exponential, JournalBearing) {
-    let surface = |surface: SurfaceItem| Surface {
-        diameter: surface.diameter,
-        coefficient: surface.coefficient,
-    };
-    let characteristic = Exponential {
-        reference_speed: item.exponential.reference_speed,
-        steepness: item.exponential.steepness,
-    };
-    let bearing = JournalBearing {
-        spacing: item.journal.spacing,
-        surface_a: surface(item.journal.surface_a),
-        surface_b: surface(item.journal.surface_b),
-        face: surface(item.journal.face),
-    };
-    (characteristic, bearing)
+    mount
 }

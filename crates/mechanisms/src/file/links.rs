@@ -1,36 +1,105 @@
 //! The links of a scene file.
 
+use super::beam;
 use super::fault::Faults;
 use super::format::{CuboidItem, CylinderItem, LinkItem, SceneFile};
-use crate::linkage::Linkage;
+use crate::linkage::{LinkHandle, Linkage, Mount};
+use indexmap::IndexMap;
 use linkdyn_dynamics::RigidInertia;
+use linkdyn_kinematics::Pose;
 use nalgebra::{Matrix3, Vector3};
 
-/// Adds all links, in the order of the file.
-pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) {
-    for (name, item) in &file.links {
-        if name == "ground" {
-            faults.add(
-                &["links", name],
-                "the ground is there already; give the link another name",
-            );
+/// The links of a file on their linkage.
+pub(super) struct Links {
+    /// By name: the link, for a beam its first element, and the end of a beam.
+    known: IndexMap<String, (LinkHandle, Option<Mount>)>,
+    /// Coordinates of beams that are held straight.
+    pub straight: Vec<String>,
+}
+
+impl Links {
+    /// Adds all links, in the order of the file, beams with the joints in them.
+    pub fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Self {
+        let mut links = Self {
+            known: IndexMap::new(),
+            straight: Vec::new(),
+        };
+        for (name, item) in &file.links {
+            if name == "ground" {
+                let message = "the ground is there already; give the link another name";
+                faults.add(&["links", name], message);
+            }
+            if ways(item) != 1 {
+                let message = "give one of `cylinder`, `box`, `beam`, or `mass` with `centre` and `inertia`";
+                faults.add(&["links", name], message);
+            }
+            let before = linkage.joints.len();
+            let flexible = item
+                .beam
+                .as_ref()
+                .and_then(|item| beam::add(name, item, linkage, faults));
+            let place = match flexible {
+                Some(link) => (
+                    link.elements.first().copied().unwrap_or(Linkage::GROUND),
+                    Some(link.end),
+                ),
+                None => {
+                    let inertia = inertia(name, item, faults).unwrap_or_else(RigidInertia::massless);
+                    if let Err(error) = inertia.validate() {
+                        faults.add(&["links", name], error.to_string());
+                    }
+                    let link = linkage.link(name, inertia);
+                    (link, item.beam.as_ref().map(|_| Mount::at_origin(link)))
+                }
+            };
+            if item.beam.as_ref().is_some_and(|beam| beam.straight) {
+                let turns = linkage.joints[before..].iter().flat_map(|joint| joint.coordinates());
+                links.straight.extend(turns);
+            }
+            links.known.insert(name.clone(), place);
         }
-        let inertia = inertia(name, item, faults).unwrap_or_else(RigidInertia::massless);
-        if let Err(error) = inertia.validate() {
-            faults.add(&["links", name], error.to_string());
+        links
+    }
+
+    /// The link of a name; the ground is one.
+    pub fn find(&self, name: &str) -> Option<LinkHandle> {
+        match name {
+            "ground" => Some(Linkage::GROUND),
+            _ => self.known.get(name).map(|(link, _)| *link),
         }
-        linkage.link(name, inertia);
+    }
+
+    /// Where a frame at the end of a beam sits.
+    pub fn at_end(&self, name: &str, pose: Pose) -> Option<Mount> {
+        let end = self.known.get(name)?.1?;
+        Some(Mount::with_pose(end.link, end.pose * pose))
+    }
+
+    /// Names of all links.
+    pub fn names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.known.keys().map(String::as_str)
     }
 }
 
-fn inertia(name: &str, item: &LinkItem, faults: &mut Faults<'_>) -> Option<RigidInertia> {
-    let ways = [item.mass.is_some(), item.cylinder.is_some(), item.cuboid.is_some()];
+/// In how many ways the link is given.
+fn ways(item: &LinkItem) -> usize {
+    let mass = item.mass.is_some();
     let only_mass = item.centre.is_some() || item.inertia.is_some();
-    if ways.into_iter().filter(|there| *there).count() != 1 || (only_mass && item.mass.is_none()) {
-        let message = "give one of `cylinder`, `box`, or `mass` with `centre` and `inertia`";
-        faults.add(&["links", name], message);
-        return None;
-    }
+    let ways = [
+        mass,
+        item.cylinder.is_some(),
+        item.cuboid.is_some(),
+        item.beam.is_some(),
+    ];
+    // Centre and inertia say nothing without a mass, as a second way.
+    ways.into_iter()
+        .chain([only_mass && !mass])
+        .filter(|there| *there)
+        .count()
+}
+
+/// Inertia of a rigid link; none where it cannot be.
+fn inertia(name: &str, item: &LinkItem, faults: &mut Faults<'_>) -> Option<RigidInertia> {
     let mut positive = |key: &str, parts: &[(&str, f64)]| {
         let mut sound = true;
         for (part, value) in parts.iter().filter(|(_, value)| !(value.is_finite() && *value > 0.0)) {

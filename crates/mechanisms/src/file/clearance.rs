@@ -1,0 +1,175 @@
+//! Clearance of a scene file's cut joints: its format, and how it is read.
+
+use super::fault::Faults;
+use crate::clearance::{Clearance, ClearanceModel, Side};
+use linkdyn_contact::{
+    ContactLaw, Damping, Fit, ForcePoint, KelvinVoigt, Material, NormalLaw, NormalModel, ball_in_socket,
+};
+use linkdyn_friction::{Bristle, BristleModel, BristleStart, ElastoPlastic, LuGre};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Clearance of a revolute joint, which is cut: a journal (pin) in a larger bearing (hole).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClearanceItem {
+    /// Radius of the hole \[m\].
+    pub bearing_radius: f64,
+    /// Radius of the pin \[m\].
+    pub journal_radius: f64,
+    /// Which side has the hole; the predecessor unless given.
+    #[serde(default = "predecessor")]
+    pub bearing: Side,
+    /// Length of the bearing \[m\], in which the pin may then tilt, with contact at both edges. Without it the axes stay parallel.
+    pub length: Option<f64>,
+    /// Normal force over penetration and its rate.
+    pub contact: ContactItem,
+    /// Friction over sliding speed; none unless given.
+    pub friction: Option<BristleItem>,
+    /// How deflected the bristle is when a contact is made; relaxed unless given.
+    #[serde(default)]
+    pub bristle_start: BristleStart,
+    /// Where the forces act; on both parts at one common point unless given.
+    #[serde(default)]
+    pub force_point: ForcePoint,
+}
+
+fn predecessor() -> Side {
+    Side::Predecessor
+}
+
+/// A law of contact.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+pub enum ContactItem {
+    /// The family of Hunt and Crossley, by stiffness: `K depth^n (1 + factor rate/impact speed)`.
+    Family {
+        /// Stiffness K \[N/m^n\].
+        stiffness: f64,
+        /// Exponent n, at least 1; 1.5 unless given.
+        #[serde(default = "hertz")]
+        exponent: f64,
+        /// How energy is lost; not at all unless given.
+        #[serde(default = "elastic")]
+        damping: Damping,
+        /// Floor of the impact speed \[m/s\]; 1e-6 unless given.
+        #[serde(default = "least_impact_speed")]
+        least_impact_speed: f64,
+    },
+    /// The same with exponent 1.5 and Hertz's stiffness of a ball in a socket with the radii of pin and hole.
+    Hertz {
+        /// Material of both parts.
+        material: Material,
+        /// How energy is lost; not at all unless given.
+        #[serde(default = "elastic")]
+        damping: Damping,
+        /// Floor of the impact speed \[m/s\]; 1e-6 unless given.
+        #[serde(default = "least_impact_speed")]
+        least_impact_speed: f64,
+    },
+    /// A linear spring and damper.
+    KelvinVoigt(KelvinVoigt),
+}
+
+fn hertz() -> f64 {
+    1.5
+}
+
+fn elastic() -> Damping {
+    Damping::Hertz
+}
+
+fn least_impact_speed() -> f64 {
+    NormalLaw::LEAST_IMPACT_SPEED
+}
+
+/// A bristle model of friction.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+pub enum BristleItem {
+    /// LuGre, with or without a guard.
+    Lugre(LuGre),
+    /// LuGre without drift under loads that do not break away.
+    ElastoPlastic(ElastoPlastic),
+    /// Dahl: no damping of the bristle, no static peak.
+    Dahl {
+        /// Coefficient of friction \[-\].
+        coefficient: f64,
+        /// Bristle stiffness \[1/m\].
+        bristle_stiffness: f64,
+    },
+}
+
+/// The clearance of the joint `name`; none where it cannot be.
+pub(super) fn read(name: &str, item: &ClearanceItem, faults: &mut Faults<'_>) -> Option<Clearance> {
+    let key = |key| ["joints", name, "clearance", key];
+    let fit = Fit::new(item.bearing_radius, item.journal_radius);
+    let fit = fit
+        .map_err(|error| faults.add(&key(error.field), error.to_string()))
+        .ok();
+    let law = law(fit, &item.contact)
+        .map_err(|message| faults.add(&key("contact"), message))
+        .ok();
+    let friction = item.friction.as_ref().map(|friction| match *friction {
+        BristleItem::Lugre(lugre) => lugre.into(),
+        BristleItem::ElastoPlastic(model) => model.into(),
+        BristleItem::Dahl {
+            coefficient,
+            bristle_stiffness,
+        } => LuGre::dahl(coefficient, bristle_stiffness).into(),
+    });
+    if let Some(Err(error)) = friction.as_ref().map(Bristle::validate) {
+        faults.add(&key("friction"), error.to_string());
+    }
+    let model = match item.length {
+        None => ClearanceModel::Planar,
+        Some(length) => ClearanceModel::Spatial { length },
+    };
+    if let Some(length) = item.length.filter(|length| !(length.is_finite() && *length > 0.0)) {
+        faults.add(&key("length"), format!("{length} m must be a finite positive number"));
+    }
+    Some(Clearance {
+        fit: fit?,
+        bearing: item.bearing,
+        model,
+        law: law??,
+        friction,
+        bristle_start: item.bristle_start,
+        force_point: item.force_point,
+    })
+}
+
+/// The law of contact, or what is wrong with it; none without the radii that it needs.
+fn law(fit: Option<Fit>, item: &ContactItem) -> Result<Option<ContactLaw>, String> {
+    let family = |stiffness: f64, exponent: f64, damping: Damping, least: f64| {
+        let law = NormalLaw::new(stiffness, exponent, damping).and_then(|law| law.with_least_impact_speed(least));
+        law.map(|law| Some(law.into())).map_err(|error| error.to_string())
+    };
+    match *item {
+        ContactItem::Family {
+            stiffness,
+            exponent,
+            damping,
+            least_impact_speed,
+        } => family(stiffness, exponent, damping, least_impact_speed),
+        ContactItem::Hertz {
+            material,
+            damping,
+            least_impact_speed,
+        } => {
+            let compliance = 2.0 * material.compliance().map_err(|error| error.to_string())?;
+            let Some(fit) = fit else { return Ok(None) };
+            let stiffness = ball_in_socket(fit.bearing_radius(), fit.journal_radius(), compliance);
+            family(
+                stiffness.map_err(|error| error.to_string())?,
+                hertz(),
+                damping,
+                least_impact_speed,
+            )
+        }
+        ContactItem::KelvinVoigt(law) => {
+            law.validate().map_err(|error| error.to_string())?;
+            Ok(Some(law.into()))
+        }
+    }
+}
