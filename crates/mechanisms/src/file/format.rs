@@ -204,7 +204,7 @@ pub enum DriveItem {
     },
 }
 
-/// A spring with a damper, relaxed where the coordinate is zero.
+/// A spring with a damper.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringItem {
@@ -214,6 +214,9 @@ pub struct SpringItem {
     /// Damping \[N m s/rad, N s/m\].
     #[serde(default)]
     pub damping: f64,
+    /// Coordinate at which it is relaxed \[rad, m\]; zero unless given.
+    #[serde(default)]
+    pub rest: Quantity,
 }
 
 /// Friction of a joint.

@@ -232,6 +232,7 @@ fn carry(name: &str, item: &JointItem, parts: (Joint, Mount, Mount), linkage: &m
         .map(|spring| Spring {
             stiffness: spring.stiffness,
             damping: spring.damping,
+            rest: spring.rest.0,
         })
         .collect();
     for (parameter, value, expected) in springs.iter().filter_map(Spring::fault) {
