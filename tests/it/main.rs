@@ -46,4 +46,5 @@ mod resting_contact;
 mod rsrrr;
 mod rsup;
 mod scene_examples;
+mod scene_faults;
 mod scene_files;

@@ -252,12 +252,20 @@ impl Linkage {
     }
 }
 
+/// Names of a joint's coordinates or speeds: its own for a single one.
+pub(crate) fn qualified(joint: &str, local: &[&str]) -> Vec<String> {
+    match local {
+        [_] => vec![joint.to_owned()],
+        _ => local.iter().map(|name| format!("{joint}.{name}")).collect(),
+    }
+}
+
 impl JointItem {
     /// Names of its coordinates.
     pub(crate) fn coordinates(&self) -> Vec<String> {
         self.coordinate_names
             .clone()
-            .unwrap_or_else(|| self.qualified(self.joint.coordinate_names()))
+            .unwrap_or_else(|| qualified(&self.name, self.joint.coordinate_names()))
     }
 
     /// Speeds have the names of their coordinates wherever they are their rates.
@@ -265,14 +273,7 @@ impl JointItem {
         if self.joint.coordinates() == self.joint.speeds() {
             self.coordinates()
         } else {
-            self.qualified(self.joint.speed_names())
-        }
-    }
-
-    fn qualified(&self, local: &[&str]) -> Vec<String> {
-        match local {
-            [_] => vec![self.name.clone()],
-            _ => local.iter().map(|name| format!("{}.{name}", self.name)).collect(),
+            qualified(&self.name, self.joint.speed_names())
         }
     }
 

@@ -2,7 +2,6 @@
 
 use std::fmt;
 use thiserror::Error;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// One thing that is wrong with a scene file.
@@ -10,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 pub struct Fault {
     /// Line and column, both from 1.
     pub place: (usize, usize),
-    /// The keys that lead there, like `joints.A.axis`; empty where the text is no TOML or a key is unknown.
+    /// The keys that lead there, like `joints.A.drives[0]`; empty where the text is no TOML.
     pub key: String,
     /// What is wrong and what would be right.
     pub message: String,
@@ -26,33 +25,10 @@ impl fmt::Display for Fault {
     }
 }
 
-/// All that was found to be wrong with a scene file.
+/// All that was found to be wrong with a scene file, in the order of the text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
 pub struct SceneFileError(pub Vec<Fault>);
-
-impl From<Fault> for SceneFileError {
-    fn from(fault: Fault) -> Self {
-        Self(vec![fault])
-    }
-}
-
-/// The fault of a text that the parser refuses, with the nearest right word for an unknown one.
-pub(super) fn refused(text: &str, error: &toml::de::Error) -> Fault {
-    let mut message = error.message().to_owned();
-    // Serde says: unknown field `a`, expected one of `b`, `c`.
-    let mut words = error.message().split('`').skip(1).step_by(2);
-    if let (true, Some(given)) = (error.message().starts_with("unknown "), words.next())
-        && let Some(word) = nearest(given, words)
-    {
-        message = format!("{message}; did you mean `{word}`?");
-    }
-    Fault {
-        place: place(text, error.span().map_or(0, |span| span.start)),
-        key: String::new(),
-        message,
-    }
-}
 
 /// The known word that is most like the given one, if one is.
 pub(super) fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
@@ -60,6 +36,23 @@ pub(super) fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> 
     let best = ranked.max_by(|a, b| a.0.total_cmp(&b.0));
     // Below this the words have little in common.
     best.filter(|(likeness, _)| *likeness > 0.7).map(|(_, word)| word)
+}
+
+/// That there is no such thing, and the word that was meant or those there are.
+pub(super) fn unknown<'a>(what: &str, given: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    let hint = match nearest(given, known.clone()) {
+        Some(word) => format!("did you mean `{word}`?"),
+        None => {
+            let known: Vec<String> = known.map(|word| format!("`{word}`")).collect();
+            let known = if known.is_empty() {
+                "none".into()
+            } else {
+                known.join(", ")
+            };
+            format!("there are {known}")
+        }
+    };
+    format!("there is no {what} `{given}`; {hint}")
 }
 
 /// Line and column of a byte of the text, both from 1.
@@ -70,41 +63,108 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
     (line, column)
 }
 
-/// Collects faults with the places of their keys.
+/// Collects faults with the places of their keys. An entry of a list has its number in square brackets for a key.
 pub(super) struct Faults<'a> {
     text: &'a str,
-    table: Option<Spanned<DeTable<'a>>>,
-    pub found: Vec<Fault>,
+    /// What is read: the text without what was left out of it.
+    mended: DeValue<'a>,
+    left_out: Vec<Vec<String>>,
+    found: Vec<Fault>,
 }
 
 impl<'a> Faults<'a> {
     pub fn new(text: &'a str) -> Self {
         Self {
             text,
-            table: DeTable::parse(text).ok(),
+            mended: DeValue::Table(DeTable::new()),
+            left_out: Vec::new(),
             found: Vec::new(),
         }
     }
 
-    /// A fault at the value to which the keys lead, or at the last of them that is there.
-    pub fn add(&mut self, keys: &[&str], message: impl Into<String>) {
-        let mut byte = 0;
-        let mut table = self.table.as_ref().map(Spanned::get_ref);
-        for key in keys {
-            let Some((name, value)) = table.and_then(|table| table.iter().find(|(name, _)| name.get_ref() == key))
-            else {
-                break;
-            };
-            byte = name.span().start;
-            table = match value.get_ref() {
-                DeValue::Table(inner) => Some(inner),
-                _ => None,
-            };
-        }
+    /// From now on keys are looked up in this table, which has no more than what was not left out.
+    pub fn look_up_in(&mut self, mended: DeTable<'a>) {
+        self.mended = DeValue::Table(mended);
+    }
+
+    /// A fault at a byte of the text.
+    pub fn at(&mut self, byte: usize, keys: &[&str], message: impl Into<String>) {
         self.found.push(Fault {
             place: place(self.text, byte),
-            key: keys.join("."),
+            key: keys.join(".").replace(".[", "["),
             message: message.into(),
         });
+    }
+
+    /// Remembers that what these keys lead to is not read.
+    pub fn leave_out(&mut self, keys: &[&str]) {
+        self.left_out.push(keys.iter().map(ToString::to_string).collect());
+    }
+
+    /// Whether what these keys lead to was left out, or something in it.
+    pub fn lacks(&self, keys: &[&str]) -> bool {
+        let inside = |path: &Vec<String>| path.len() >= keys.len() && path.iter().zip(keys).all(|(a, b)| a == b);
+        self.left_out.iter().any(inside)
+    }
+
+    /// Whether all that a key at the top leads to was left out.
+    pub fn lacks_all(&self, key: &str) -> bool {
+        self.left_out.iter().any(|path| path.as_slice() == [key])
+    }
+
+    /// What was left out directly below a key at the top.
+    pub fn lacking(&self, key: &str) -> impl Iterator<Item = &str> {
+        self.left_out.iter().filter_map(move |path| match path.as_slice() {
+            [first, second] if first == key => Some(second.as_str()),
+            _ => None,
+        })
+    }
+
+    /// A fault of the value to which the keys lead, at the last of them that is there; none where part of that value was left out,
+    /// which may be all that is wrong with it.
+    pub fn add(&mut self, keys: &[&str], message: impl Into<String>) {
+        let (mut byte, mut value) = (0, Some(&self.mended));
+        let mut path: Vec<String> = Vec::new();
+        for &key in keys {
+            let mut name = key.to_owned();
+            let next = match value {
+                Some(DeValue::Table(table)) => table.iter().find(|(name, _)| name.get_ref() == key),
+                Some(DeValue::Array(list)) => {
+                    let number = key.trim_matches(['[', ']']).parse().unwrap_or(usize::MAX);
+                    // Its number in the text: entries that were left out count.
+                    let numbers = (0..).map(|k| format!("[{k}]"));
+                    let mut kept =
+                        numbers.filter(|k| !self.left_out.iter().any(|out| out.split_last() == Some((k, &path[..]))));
+                    if let Some(entry) = list.get(number) {
+                        name = kept.nth(number).unwrap_or(name);
+                        byte = entry.span().start;
+                        value = Some(entry.get_ref());
+                    }
+                    path.push(name);
+                    continue;
+                }
+                _ => None,
+            };
+            if let Some((name, _)) = next {
+                byte = name.span().start;
+            }
+            value = next.map(|(_, value)| value.get_ref());
+            path.push(name);
+        }
+        let path: Vec<&str> = path.iter().map(String::as_str).collect();
+        if !self.lacks(&path) {
+            self.at(byte, &path, message);
+        }
+    }
+
+    /// Whether nothing was wrong so far.
+    pub fn none(&self) -> bool {
+        self.found.is_empty()
+    }
+
+    /// All faults in the order of the text.
+    pub fn result(mut self) -> SceneFileError {
+        self.found.sort_by_key(|fault| fault.place);
+        SceneFileError(self.found)
     }
 }

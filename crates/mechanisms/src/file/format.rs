@@ -21,6 +21,15 @@ pub struct SceneFile {
     pub links: IndexMap<String, LinkItem>,
     /// The joints by name.
     pub joints: IndexMap<String, JointItem>,
+    /// Forces on points of links by name.
+    #[serde(default)]
+    pub forces: IndexMap<String, PointLoadItem>,
+    /// Moments on links by name.
+    #[serde(default)]
+    pub moments: IndexMap<String, PointLoadItem>,
+    /// Springs with dampers between two points by name.
+    #[serde(default)]
+    pub struts: IndexMap<String, StrutItem>,
     /// Where the linkage starts.
     #[serde(default)]
     pub start: StartItem,
@@ -103,6 +112,99 @@ pub struct JointItem {
     pub springs: Vec<SpringItem>,
     /// Friction in a revolute joint.
     pub friction: Option<FrictionItem>,
+    /// Stops at the ends of the way of its one coordinate.
+    pub limit: Option<LimitItem>,
+}
+
+/// Stops at one or both ends of a coordinate's way, with contact beyond them.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LimitItem {
+    /// Where the coordinate meets the lower stop \[rad, m\], angles also as texts like `"30 deg"`; none unless given.
+    pub lower: Option<Quantity>,
+    /// Where it meets the upper stop; none unless given.
+    pub upper: Option<Quantity>,
+    /// Force over penetration.
+    pub contact: ContactItem,
+}
+
+/// Force of a contact over penetration and its rate.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+pub enum ContactItem {
+    /// A power of the penetration, with as much loss as a free impact of a restitution needs.
+    Power {
+        /// Force at a penetration of one \[N/m^exponent, N m/rad^exponent\].
+        stiffness: f64,
+        /// Exponent \[-\], 1 or more; 1.5 unless given.
+        #[serde(default = "hertz")]
+        exponent: f64,
+        /// Speed after an impact as a share of that before it, from more than 0 to 1 \[-\]; 1 unless given.
+        #[serde(default = "no_loss")]
+        restitution: f64,
+    },
+    /// A linear spring and damper.
+    KelvinVoigt {
+        /// Stiffness \[N/m, N m/rad\].
+        stiffness: f64,
+        /// Damping \[N s/m, N m s/rad\].
+        damping: f64,
+    },
+}
+
+fn hertz() -> f64 {
+    1.5
+}
+
+fn no_loss() -> f64 {
+    1.0
+}
+
+/// A force on a point of a link, or a moment on a link.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointLoadItem {
+    /// The link, and its point.
+    pub at: MountItem,
+    /// Direction, of any length but zero.
+    pub direction: [f64; 3],
+    /// In whose axes the direction stays fixed; the ground's unless given.
+    #[serde(default)]
+    pub axes: AxesItem,
+    /// Size along the direction; drives add up. Resistances see the point's speed along it, for a moment the angular velocity about it.
+    pub drives: Vec<DriveItem>,
+}
+
+/// What a direction is fixed in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AxesItem {
+    /// The ground.
+    #[default]
+    Ground,
+    /// The frame `at` on the link, with which the direction turns.
+    Link,
+}
+
+/// A spring with a damper between two points.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StrutItem {
+    /// One end.
+    #[serde(default)]
+    pub from: MountItem,
+    /// The other end.
+    #[serde(default)]
+    pub to: MountItem,
+    /// Distance of the ends at which it is relaxed \[m\]; zero unless given.
+    #[serde(default)]
+    pub free_length: f64,
+    /// Stiffness \[N/m\].
+    #[serde(default)]
+    pub stiffness: f64,
+    /// Damping \[N s/m\].
+    #[serde(default)]
+    pub damping: f64,
 }
 
 /// Kinds of joints.

@@ -1,47 +1,75 @@
-//! The joints of a scene file, and what sits in them.
+//! The joints of a scene file: what they are, where they sit, which of them carry links.
 
-use super::fault::{Faults, nearest};
-use super::format::{DriveItem, FrictionItem, JointItem, Kind, MountItem, SceneFile, SurfaceItem};
-use crate::drive::Drive;
+use super::fault::{Faults, unknown};
+use super::format::{JointItem, Kind, MountItem, SceneFile};
+use super::loads::{self, Sitting};
 use crate::linkage::{LinkHandle, Linkage, Mount};
 use crate::spanning::{Edge, Role, spanning_tree};
-use crate::spline::Spline;
-use crate::spring::Spring;
-use linkdyn_friction::{BearingModel, Characteristic, Exponential, JournalBearing, Surface};
 use linkdyn_kinematics::{Joint, Pose};
 use nalgebra::{Rotation3, Unit, Vector3};
+use std::collections::HashSet;
 
-/// Adds all joints, in the order of the file.
-pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) {
+/// A joint as the file has it.
+struct Read<'f> {
+    name: &'f str,
+    item: &'f JointItem,
+    joint: Joint,
+    predecessor: Mount,
+    successor: Mount,
+    sitting: Sitting,
+}
+
+/// Adds all joints, in the order of the file. Which of them are cut is judged only where all could be read. The result are the names of
+/// those that are.
+pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Vec<String> {
     let mut read = Vec::new();
+    let mut coordinates = HashSet::new();
     for (name, item) in &file.joints {
         let joint = joint(name, item, faults);
-        let predecessor = mount(file, name, "predecessor", &item.predecessor, faults);
-        let successor = mount(file, name, "successor", &item.successor, faults);
+        let predecessor = mount(file, &["joints", name, "predecessor"], &item.predecessor, faults);
+        let successor = mount(file, &["joints", name, "successor"], &item.successor, faults);
         if let (Some(one), Some(two)) = (predecessor, successor)
             && one.link == two.link
         {
-            faults.add(
-                &["joints", name],
-                "connects a link to itself; give predecessor and successor different links",
-            );
+            let message = "has the same link as the predecessor; a joint connects two";
+            faults.add(&["joints", name, "successor"], message);
         }
-        read.push((name, item, joint.zip(predecessor.zip(successor))));
+        let sitting = loads::read(name, item, faults);
+        for coordinate in item.coordinates.iter().flatten() {
+            if !coordinates.insert(coordinate) {
+                let message = format!("the name `{coordinate}` is used twice");
+                faults.add(&["joints", name, "coordinates"], message);
+            }
+        }
+        if let (Some(joint), Some(predecessor), Some(successor)) = (joint, predecessor, successor) {
+            read.push(Read {
+                name,
+                item,
+                joint,
+                predecessor,
+                successor,
+                sitting,
+            });
+        }
     }
-    let read: Vec<_> = read
-        .into_iter()
-        .filter_map(|(name, item, parts)| parts.map(|(joint, (one, two))| (name, item, joint, one, two)))
-        .collect();
+    if read.len() < file.joints.len() || faults.lacks(&["joints"]) {
+        return Vec::new();
+    }
     let edges: Vec<Edge> = read
         .iter()
-        .map(|(_, item, joint, one, two)| Edge {
-            predecessor: one.link.0,
-            successor: two.link.0,
-            freedoms: joint.speeds(),
-            cut: item.cut.or(sits_on_coordinates(item).map(|_| false)),
+        .map(|read| Edge {
+            predecessor: read.predecessor.link.0,
+            successor: read.successor.link.0,
+            freedoms: read.joint.speeds(),
+            cut: read.item.cut.or(sits_on_coordinates(read.item).map(|_| false)),
         })
         .collect();
-    for ((name, item, joint, one, two), role) in read.into_iter().zip(spanning_tree(file.links.len(), &edges)) {
+    let roles = spanning_tree(file.links.len(), &edges);
+    connected(file, &edges, &roles, faults);
+    let mut cut = Vec::new();
+    for (read, role) in read.into_iter().zip(roles) {
+        let (name, item) = (read.name, read.item);
+        let (one, two) = (read.predecessor, read.successor);
         match role {
             Role::Cut => {
                 if item.cut == Some(false) {
@@ -56,17 +84,45 @@ pub(super) fn add(file: &SceneFile, linkage: &mut Linkage, faults: &mut Faults<'
                         "goes with joints that carry a link; this one is cut, so cut another joint of its loop",
                     );
                 }
-                linkage.cut(name, joint, one, two);
+                linkage.cut(name, read.joint, one, two);
+                cut.push(name.to_owned());
             }
-            Role::Carries => carry(name, item, (joint, one, two), linkage, faults),
-            Role::CarriesBackwards => match backwards(joint) {
-                Some(joint) => carry(name, item, (joint, two, one), linkage, faults),
+            Role::Carries => {
+                let joint = linkage.joint(name, read.joint, one, two);
+                read.sitting.put(joint, item, linkage);
+            }
+            Role::CarriesBackwards => match backwards(read.joint) {
+                Some(kind) => {
+                    let joint = linkage.joint(name, kind, two, one);
+                    read.sitting.put(joint, item, linkage);
+                }
                 None => {
                     let message = "must carry its successor; exchange predecessor and successor, or set `cut = true`";
-                    faults.add(&["joints", name], message);
+                    faults.add(&["joints", name, "successor"], message);
                 }
             },
         }
+    }
+    cut
+}
+
+/// Refuses links that hang on nothing.
+fn connected(file: &SceneFile, edges: &[Edge], roles: &[Role], faults: &mut Faults<'_>) {
+    let carried: HashSet<usize> = edges
+        .iter()
+        .zip(roles)
+        .filter_map(|(edge, role)| match role {
+            Role::Carries => edge.successor,
+            Role::CarriesBackwards => edge.predecessor,
+            Role::Cut => None,
+        })
+        .collect();
+    let links = file.links.keys().enumerate();
+    for (_, name) in links.filter(|(k, _)| !carried.contains(k)) {
+        faults.add(
+            &["links", name],
+            "no chain of joints that are not cut leads from it to the ground",
+        );
     }
 }
 
@@ -76,6 +132,7 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
         (!item.drives.is_empty(), "drives"),
         (!item.springs.is_empty(), "springs"),
         (item.friction.is_some(), "friction"),
+        (item.limit.is_some(), "limit"),
         (item.coordinates.is_some(), "coordinates"),
     ];
     there.into_iter().find_map(|(there, key)| there.then_some(key))
@@ -93,8 +150,8 @@ fn backwards(joint: Joint) -> Option<Joint> {
 }
 
 fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint> {
-    let mut axis = |key: &str, given: Option<[f64; 3]>, default: Vector3<f64>| {
-        let vector = given.map_or(default, Vector3::from);
+    let mut axis = |key: &str, given: Option<[f64; 3]>, default: Unit<Vector3<f64>>| {
+        let vector = given.map_or(*default, Vector3::from);
         let sound = vector.iter().all(|x| x.is_finite());
         let unit = Unit::try_new(vector, f64::MIN_POSITIVE).filter(|unit| sound && unit.iter().all(|x| x.is_finite()));
         if unit.is_none() {
@@ -102,29 +159,10 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
         }
         unit
     };
-    let second = if item.kind == Kind::Planar {
-        Vector3::x()
-    } else {
-        Vector3::y()
-    };
-    let (first, second) = (
-        axis("axis", item.axis, Vector3::z())?,
-        axis("second_axis", item.second_axis, second)?,
-    );
-    let joint = match item.kind {
-        Kind::Fixed => Joint::Fixed,
-        Kind::Revolute => Joint::Revolute { axis: first },
-        Kind::Prismatic => Joint::Prismatic { axis: first },
-        Kind::Cylindrical => Joint::Cylindrical { axis: first },
-        Kind::Universal => Joint::Universal { first, second },
-        Kind::Spherical => Joint::Spherical,
-        Kind::SphericalZyx => Joint::SphericalZyx,
-        Kind::Planar => Joint::Planar {
-            along: second,
-            normal: first,
-        },
-        Kind::Free => Joint::Free,
-    };
+    let (first, second) = default_axes(item.kind);
+    let first = axis("axis", item.axis, first);
+    let second = axis("second_axis", item.second_axis, second);
+    let joint = of_kind(item.kind, first?, second?);
     let no_axis = matches!(
         item.kind,
         Kind::Fixed | Kind::Spherical | Kind::SphericalZyx | Kind::Free
@@ -144,27 +182,64 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
     if joint.validate().is_err() {
         let message =
             "the axes of a universal joint must not be parallel, those of a planar one must be at right angles";
-        faults.add(&["joints", name], message);
+        let key = if item.second_axis.is_some() {
+            "second_axis"
+        } else {
+            "axis"
+        };
+        faults.add(&["joints", name, key], message);
         return None;
     }
     Some(joint)
 }
 
-fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
+/// First and second axis of joints that give none.
+fn default_axes(kind: Kind) -> (Unit<Vector3<f64>>, Unit<Vector3<f64>>) {
+    let second = if kind == Kind::Planar {
+        Vector3::x_axis()
+    } else {
+        Vector3::y_axis()
+    };
+    (Vector3::z_axis(), second)
+}
+
+/// A joint of a kind.
+pub(super) fn any_of_kind(kind: Kind) -> Joint {
+    let (first, second) = default_axes(kind);
+    of_kind(kind, first, second)
+}
+
+fn of_kind(kind: Kind, first: Unit<Vector3<f64>>, second: Unit<Vector3<f64>>) -> Joint {
+    match kind {
+        Kind::Fixed => Joint::Fixed,
+        Kind::Revolute => Joint::Revolute { axis: first },
+        Kind::Prismatic => Joint::Prismatic { axis: first },
+        Kind::Cylindrical => Joint::Cylindrical { axis: first },
+        Kind::Universal => Joint::Universal { first, second },
+        Kind::Spherical => Joint::Spherical,
+        Kind::SphericalZyx => Joint::SphericalZyx,
+        Kind::Planar => Joint::Planar {
+            along: second,
+            normal: first,
+        },
+        Kind::Free => Joint::Free,
+    }
+}
+
+/// The frame on a link to which `keys` lead.
+pub(super) fn mount(file: &SceneFile, keys: &[&str], item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
+    let below = |more: &[&'static str]| [keys, more].concat();
     let link = match item.link.as_deref() {
         None | Some("ground") => Linkage::GROUND,
         Some(link) => match file.links.get_index_of(link) {
             Some(k) => LinkHandle(Some(k)),
             None => {
-                let known = file.links.keys().map(String::as_str).chain(["ground"]);
-                let hint = match nearest(link, known.clone()) {
-                    Some(word) => format!("did you mean `{word}`?"),
-                    None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
-                };
-                faults.add(
-                    &["joints", name, side, "link"],
-                    format!("there is no link `{link}`; {hint}"),
-                );
+                let known = file.links.keys().map(String::as_str);
+                let left_out: Vec<&str> = faults.lacking("links").collect();
+                if !left_out.contains(&link) && !faults.lacks_all("links") {
+                    let message = unknown("link", link, known.chain(left_out).chain(["ground"]));
+                    faults.add(&below(&["link"]), message);
+                }
                 return None;
             }
         },
@@ -176,7 +251,7 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
             let axis = Unit::try_new(Vector3::from(turn.axis), f64::MIN_POSITIVE);
             let Some(axis) = axis.filter(|axis| axis.iter().all(|x| x.is_finite())) else {
                 let message = "must be three finite numbers, not all zero";
-                faults.add(&["joints", name, side, "turn", "axis"], message);
+                faults.add(&below(&["turn", "axis"]), message);
                 return None;
             };
             Pose {
@@ -185,10 +260,7 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
             }
         }
         (Some(_), Some(_)) => {
-            faults.add(
-                &["joints", name, side, "turn"],
-                "says again what `rotation` says; give one of them",
-            );
+            faults.add(&below(&["turn"]), "says again what `rotation` says; give one of them");
             return None;
         }
     };
@@ -197,113 +269,8 @@ fn mount(file: &SceneFile, name: &str, side: &str, item: &MountItem, faults: &mu
         let message = format!(
             "point and rotation must be finite and the rotation proper, but it is off by {defect:e} (allowed: 1e-9)"
         );
-        faults.add(&["joints", name, side], message);
+        faults.add(keys, message);
         return None;
     }
     Some(Mount { link, pose })
-}
-
-fn carry(name: &str, item: &JointItem, parts: (Joint, Mount, Mount), linkage: &mut Linkage, faults: &mut Faults<'_>) {
-    let (kind, predecessor, successor) = parts;
-    let freedoms = kind.coordinates();
-    let joint = linkage.joint(name, kind, predecessor, successor);
-    if let Some(names) = &item.coordinates {
-        if names.len() == freedoms {
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            linkage.coordinate_names(joint, &names);
-        } else {
-            let message = format!("the joint has {freedoms} coordinates, {} names were given", names.len());
-            faults.add(&["joints", name, "coordinates"], message);
-        }
-    }
-    for item in &item.drives {
-        let drive = drive(item);
-        if let Some((parameter, value, expected)) = drive.fault() {
-            faults.add(
-                &["joints", name, "drives"],
-                format!("{parameter} = {value} must be {expected}"),
-            );
-        }
-        linkage.drive(joint, drive);
-    }
-    let springs: Vec<Spring> = item
-        .springs
-        .iter()
-        .map(|spring| Spring {
-            stiffness: spring.stiffness,
-            damping: spring.damping,
-            rest: spring.rest.0,
-        })
-        .collect();
-    for (parameter, value, expected) in springs.iter().filter_map(Spring::fault) {
-        faults.add(
-            &["joints", name, "springs"],
-            format!("{parameter} = {value} must be {expected}"),
-        );
-    }
-    if !springs.is_empty() {
-        linkage.springs(joint, &springs);
-    }
-    if let Some(item) = &item.friction {
-        let (characteristic, bearing) = friction(item);
-        if let Err(error) = characteristic.validate().and_then(|()| bearing.validate()) {
-            faults.add(&["joints", name, "friction"], error.to_string());
-        }
-        linkage.friction(joint, characteristic, bearing);
-    }
-}
-
-fn drive(item: &DriveItem) -> Drive {
-    match *item {
-        DriveItem::Ramp { torque, rise_time } => Drive::Ramp { torque, rise_time },
-        DriveItem::Constant { torque } => Drive::Constant { torque },
-        DriveItem::Harmonic {
-            amplitude,
-            frequency,
-            phase,
-        } => Drive::Harmonic {
-            amplitude,
-            frequency,
-            phase,
-        },
-        DriveItem::Table { ref points, monotone } => {
-            let nodes: Vec<(f64, f64)> = points.iter().map(|&[t, value]| (t, value)).collect();
-            let through = if monotone { Spline::monotone } else { Spline::natural };
-            Drive::Table {
-                spline: through(&nodes),
-            }
-        }
-        DriveItem::QuadraticResistance {
-            torque,
-            reference_speed,
-        } => Drive::QuadraticResistance {
-            torque,
-            reference_speed,
-        },
-        DriveItem::Resistance {
-            torque,
-            reference_speed,
-        } => Drive::Resistance {
-            torque,
-            reference_speed,
-        },
-    }
-}
-
-fn friction(item: &FrictionItem) -> (Exponential, JournalBearing) {
-    let surface = |surface: SurfaceItem| Surface {
-        diameter: surface.diameter,
-        coefficient: surface.coefficient,
-    };
-    let characteristic = Exponential {
-        reference_speed: item.exponential.reference_speed,
-        steepness: item.exponential.steepness,
-    };
-    let bearing = JournalBearing {
-        spacing: item.journal.spacing,
-        surface_a: surface(item.journal.surface_a),
-        surface_b: surface(item.journal.surface_b),
-        face: surface(item.journal.face),
-    };
-    (characteristic, bearing)
 }

@@ -22,7 +22,12 @@ mod fault;
 mod format;
 mod joints;
 mod links;
+mod loads;
+mod names;
+mod points;
 mod quantity;
+mod shape;
+mod start;
 
 pub use fault::{Fault, SceneFileError};
 pub use format::*;
@@ -31,7 +36,10 @@ pub use quantity::Quantity;
 use crate::linkage::Linkage;
 use crate::mechanism::Start;
 use crate::scene::Scene;
-use fault::{Faults, nearest, refused};
+use fault::Faults;
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, Deserializer};
 
 /// A commented scene file to begin with: a four-bar.
 pub const TEMPLATE: &str = include_str!("../../scenes/four_bar.toml");
@@ -45,10 +53,28 @@ pub fn schema() -> serde_json::Value {
 /// [`spanning_tree`](crate::spanning_tree); those with drives, springs, friction or named coordinates carry.
 ///
 /// # Errors
-/// A text that is no TOML, keys and kinds that there are not: the first one. Else all names and numbers that are wrong at once.
+/// All that is wrong at once, as far as one can be judged without the other. A text that is no TOML is not judged further, and whether
+/// the equations of motion can be set up only where nothing else is wrong.
 pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
-    let file: SceneFile = toml::from_str(text).map_err(|error| refused(text, &error))?;
     let mut faults = Faults::new(text);
+    let (table, errors) = DeTable::parse_recoverable(text);
+    for error in &errors {
+        faults.at(error.span().map_or(0, |span| span.start), &[], error.message());
+    }
+    if !errors.is_empty() {
+        return Err(faults.result());
+    }
+    let given = table.into_inner();
+    let mut mended = given.clone();
+    shape::mend(&schema(), &mut mended, &mut faults);
+    faults.look_up_in(mended.clone());
+    let file = match SceneFile::deserialize(Deserializer::from(Spanned::new(0..0, mended))) {
+        Ok(file) => file,
+        Err(error) => {
+            faults.at(error.span().map_or(0, |span| span.start), &[], error.message());
+            return Err(faults.result());
+        }
+    };
     if file.format != 1 {
         let message = format!("{} is no known format; write `format = 1`", file.format);
         faults.add(&["format"], message);
@@ -58,28 +84,26 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
     }
     let mut linkage = Linkage::new(file.gravity);
     links::add(&file, &mut linkage, &mut faults);
-    joints::add(&file, &mut linkage, &mut faults);
-    check_start(&file, &linkage, &mut faults);
-    if faults.found.is_empty()
+    let cut = joints::add(&file, &mut linkage, &mut faults);
+    points::add(&file, &mut linkage, &mut faults);
+    let names = names::coordinates(&file, &cut, &given, &faults);
+    start::check(&file, &names, &mut faults);
+    if faults.none()
         && let Err(error) = linkage.build()
     {
         faults.add(&["joints"], error.to_string());
     }
-    if !faults.found.is_empty() {
-        return Err(SceneFileError(faults.found));
+    if !faults.none() {
+        return Err(faults.result());
     }
     let first = linkage.joints.iter().flat_map(|joint| joint.coordinates()).next();
+    let positions = file.start.positions.into_iter();
     Ok(Scene {
         name: name.to_owned(),
         summary: file.summary,
         linkage,
         start: Start {
-            positions: file
-                .start
-                .positions
-                .into_iter()
-                .map(|(name, Quantity(value))| (name, value))
-                .collect(),
+            positions: positions.map(|(name, Quantity(value))| (name, value)).collect(),
             held: file.start.held,
             speeds: file.start.speeds.into_iter().collect(),
         },
@@ -88,45 +112,4 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         crank: file.run.crank.or(first).unwrap_or_default(),
         output: file.run.output,
     })
-}
-
-/// Start and run: names of coordinates, and numbers.
-fn check_start(file: &SceneFile, linkage: &Linkage, faults: &mut Faults<'_>) {
-    let known: Vec<String> = linkage.joints.iter().flat_map(|joint| joint.coordinates()).collect();
-    let mut check = |keys: &[&str], name: &str| {
-        if !known.iter().any(|there| there == name) {
-            let hint = match nearest(name, known.iter().map(String::as_str)) {
-                Some(word) => format!("did you mean `{word}`?"),
-                None => format!("there are {}", known.join(", ")),
-            };
-            faults.add(keys, format!("there is no coordinate `{name}`; {hint}"));
-        }
-    };
-    for name in file.start.positions.keys() {
-        check(&["start", "positions", name], name);
-    }
-    for name in &file.start.held {
-        check(&["start", "held"], name);
-    }
-    for name in file.start.speeds.keys() {
-        check(&["start", "speeds", name], name);
-    }
-    for (key, name) in [("crank", &file.run.crank), ("output", &file.run.output)] {
-        if let Some(name) = name {
-            check(&["run", key], name);
-        }
-    }
-    let positions = file
-        .start
-        .positions
-        .iter()
-        .map(|(name, value)| ("positions", name, value.0));
-    let speeds = file.start.speeds.iter().map(|(name, &value)| ("speeds", name, value));
-    for (key, name, value) in positions.chain(speeds).filter(|(.., value)| !value.is_finite()) {
-        faults.add(&["start", key, name], format!("{value} must be a finite number"));
-    }
-    let until = file.run.until;
-    if !(until.is_finite() && until > 0.0) {
-        faults.add(&["run", "until"], format!("{until} s must be a finite positive number"));
-    }
 }

@@ -9,6 +9,14 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quantity(pub f64);
 
+impl Quantity {
+    /// From degrees with their unit.
+    pub(super) fn degrees(text: &str) -> Option<Self> {
+        let number = text.strip_suffix("deg")?.trim().parse::<f64>().ok()?;
+        Some(Self(number.to_radians()))
+    }
+}
+
 impl<'de> Deserialize<'de> for Quantity {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(Reader)
@@ -33,11 +41,7 @@ impl Visitor<'_> for Reader {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Quantity, E> {
-        let degrees = text
-            .strip_suffix("deg")
-            .and_then(|number| number.trim().parse::<f64>().ok());
-        let value = degrees.map(|degrees| Quantity(degrees.to_radians()));
-        value.ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+        Quantity::degrees(text).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
     }
 }
 
