@@ -45,6 +45,7 @@ mod refusals;
 mod resting_contact;
 mod rsrrr;
 mod rsup;
+mod scene_benchmarks;
 mod scene_examples;
 mod scene_faults;
 mod scene_files;
