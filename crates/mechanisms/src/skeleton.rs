@@ -12,8 +12,8 @@ pub struct Skeleton {
     pub links: Vec<PlacedLink>,
     /// The joints, those of the tree first.
     pub joints: Vec<PlacedJoint>,
-    /// Both ends of each strut \[m\].
-    pub struts: Vec<[Vector3<f64>; 2]>,
+    /// Both ends of each strut: index of the link, `None` for the ground, and point \[m\].
+    pub struts: Vec<[(Option<usize>, Vector3<f64>); 2]>,
 }
 
 /// A link at a position.
@@ -78,11 +78,8 @@ impl Linkage {
             links: [one.link.0, two.link.0],
             frames: [on(one), on(two)],
         });
-        let ends = |mount: &Mount| on(mount).origin;
-        let struts = self
-            .struts
-            .iter()
-            .map(|(_, strut)| [ends(&strut.from), ends(&strut.to)]);
+        let end = |mount: &Mount| (mount.link.0, on(mount).origin);
+        let struts = self.struts.iter().map(|(_, strut)| [end(&strut.from), end(&strut.to)]);
         Skeleton {
             joints: joints.collect(),
             struts: struts.collect(),

@@ -57,7 +57,7 @@ pub fn draw(args: &DrawArgs) -> Result<(), CliError> {
 fn points(skeleton: &Skeleton) -> impl Iterator<Item = Vector3<f64>> {
     let drawn = skeleton.joints.iter().filter(|j| is_drawn(j));
     let joints = drawn.flat_map(|j| j.frames.iter().map(|frame| frame.origin));
-    let struts = skeleton.struts.iter().flatten().copied();
+    let struts = skeleton.struts.iter().flatten().map(|(_, point)| *point);
     let links = (0..skeleton.links.len()).flat_map(|link| corners(skeleton, link));
     joints.chain(struts).chain(links)
 }
@@ -67,7 +67,14 @@ fn is_drawn(joint: &PlacedJoint) -> bool {
     !matches!(joint.joint, Joint::Free)
 }
 
-/// Corners of a link: its joints, and its centre where these are one point only.
+fn slides(joint: &Joint) -> bool {
+    matches!(
+        joint,
+        Joint::Prismatic { .. } | Joint::Cylindrical { .. } | Joint::Planar { .. }
+    )
+}
+
+/// Corners of a link: its joints and ends of struts, and its centre where these are one point only.
 fn corners(skeleton: &Skeleton, link: usize) -> Vec<Vector3<f64>> {
     let mut corners: Vec<Vector3<f64>> = Vec::new();
     for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
@@ -78,6 +85,8 @@ fn corners(skeleton: &Skeleton, link: usize) -> Vec<Vector3<f64>> {
                 .map(|(_, frame)| frame.origin),
         );
     }
+    let ends = skeleton.struts.iter().flatten();
+    corners.extend(ends.filter(|(side, _)| *side == Some(link)).map(|(_, point)| *point));
     let first = corners.first().copied();
     let one_point = first.is_some_and(|first| corners.iter().all(|p| (p - first).norm() < 1e-9));
     if one_point {
@@ -134,9 +143,17 @@ fn picture(prepared: &Prepared) -> String {
     let page = Page::new(View::of(&skeleton, Vector3::from(linkage.gravity())), &skeleton);
     let mut ground = Group::new();
     for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
-        for (_, frame) in joint.links.iter().zip(&joint.frames).filter(|(side, _)| side.is_none()) {
-            ground = ground.add(symbols::ground(page.place(frame.origin)));
+        let [one, two] = joint.frames.map(|frame| page.place(frame.origin));
+        match joint.links {
+            // What slides on the ground stands on it wherever it is.
+            [None, _] if slides(&joint.joint) => ground = ground.add(symbols::ground(two)),
+            [None, _] => ground = ground.add(symbols::ground(one)),
+            [_, None] => ground = ground.add(symbols::ground(two)),
+            _ => {}
         }
+    }
+    for (_, end) in skeleton.struts.iter().flatten().filter(|(link, _)| link.is_none()) {
+        ground = ground.add(symbols::ground(page.place(*end)));
     }
     let mut links = Group::new();
     for (k, link) in skeleton.links.iter().enumerate() {
@@ -153,11 +170,12 @@ fn picture(prepared: &Prepared) -> String {
     }
     let mut struts = Group::new();
     for ends in &skeleton.struts {
-        struts = struts.add(symbols::spring(ends.map(|end| page.place(end))));
+        struts = struts.add(symbols::spring(ends.map(|(_, end)| page.place(end))));
     }
     let mut joints = Group::new();
     for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
-        let places = joint.frames.map(|frame| page.place(frame.origin));
+        let [one, two] = joint.frames.map(|frame| page.place(frame.origin));
+        let places = [if joint.links[0].is_none() { two } else { one }, two];
         let along = |axis: Vector3<f64>| page.direction(joint.frames[0].rotation * axis);
         joints = joints.add(symbols::joint(&joint.joint, places, along).add(Title::new(joint.name.as_str())));
     }

@@ -121,10 +121,10 @@ pub(super) fn spring([from, to]: [Point; 2]) -> Path {
     } else {
         [0.0; 2]
     };
-    // Straight ends, and between them four teeth to either side.
+    // Straight ends, and between them three teeth to either side.
     let mut points = vec![from];
-    for k in 0..=8 {
-        let (share, side) = (0.2 + 0.075 * f64::from(k), [0.0, 6.0, 0.0, -6.0][k as usize % 4]);
+    for (k, side) in [0.0, 6.0, 0.0, -6.0].into_iter().cycle().take(13).enumerate() {
+        let share = 0.2 + 0.05 * k as f64;
         points.push([0, 1].map(|i| from[i] + share * way[i] + side * across[i]));
     }
     points.push(to);
@@ -134,6 +134,8 @@ pub(super) fn spring([from, to]: [Point; 2]) -> Path {
 /// The symbol of a joint whose sides lie at `places`; `along` turns an axis of its frame into a direction on the page.
 pub(super) fn joint(joint: &Joint, places: [Point; 2], along: impl Fn(Vector3<f64>) -> Point) -> Group {
     let [on_predecessor, at] = places;
+    // Far from both ends the symbols of other joints do not hide that of a slide.
+    let slide = [0, 1].map(|i| 0.5 * (on_predecessor[i] + at[i]));
     let ends = |axis: Point, half: f64| [-half, half].map(|k| [at[0] + k * axis[0], at[1] + k * axis[1]]);
     let pin = |axis: Vector3<f64>| line(&ends(along(axis), 13.0), INK, 2.0);
     let group = Group::new();
@@ -146,14 +148,16 @@ pub(super) fn joint(joint: &Joint, places: [Point; 2], along: impl Fn(Vector3<f6
         Joint::Prismatic { axis } | Joint::Cylindrical { axis } => {
             let seen = along(**axis);
             let rail = line(&[on_predecessor, at], INK, 1.0).set("stroke-dasharray", "4 3");
-            let group = group.add(rail).add(line(&ends(seen, 26.0), INK, 1.0));
             let length = f64::hypot(seen[0], seen[1]);
             let across = if length > 1e-3 {
                 [-seen[1] / length, seen[0] / length]
             } else {
                 [1.0, 0.0]
             };
-            let corner = |a: f64, b: f64| [0, 1].map(|i| at[i] + a * seen[i] + b * across[i]);
+            let corner = |a: f64, b: f64| [0, 1].map(|i| slide[i] + a * seen[i] + b * across[i]);
+            let group = group
+                .add(rail)
+                .add(line(&[corner(-26.0, 0.0), corner(26.0, 0.0)], INK, 1.0));
             let block = [
                 corner(-12.0, -6.0),
                 corner(12.0, -6.0),
@@ -162,7 +166,7 @@ pub(super) fn joint(joint: &Joint, places: [Point; 2], along: impl Fn(Vector3<f6
             ];
             let group = group.add(plate(&block, PAPER, INK, 1.5));
             match joint {
-                Joint::Cylindrical { .. } => group.add(disc(at, 3.0, PAPER)),
+                Joint::Cylindrical { .. } => group.add(disc(slide, 3.0, PAPER)),
                 _ => group,
             }
         }
