@@ -255,6 +255,7 @@ fn what_nothing_pushes_is_indifferent_and_what_cannot_move_is_refused() {
         &[Spring {
             stiffness: 3.0,
             damping: 0.1,
+            ..Spring::default()
         }],
     );
     let sprung = equilibrium(&linkage.build().expect("valid"), &[0.3], &Settings::default()).expect("rests");

@@ -35,7 +35,12 @@ fn a_pendulum_with_spring_and_damper() {
         Mount::at_origin(Linkage::GROUND),
         Mount::at_origin(link),
     );
-    linkage.springs(joint, &[Spring { stiffness, damping }]);
+    let spring = Spring {
+        stiffness,
+        damping,
+        ..Spring::default()
+    };
+    linkage.springs(joint, &[spring]);
     let mechanism = linkage.build().expect("valid");
     let found = linearise(&mechanism, 0.0, &at_rest(&[0.0], 1)).expect("at rest");
     let (m, k) = (mass * length * length, mass * 9.81 * length + stiffness);

@@ -149,7 +149,11 @@ fn clearance_is_for_cut_revolute_joints_of_the_same_linkage() {
 
 #[test]
 fn springs_that_do_not_fit_are_refused_by_name() {
-    let spring = |stiffness: f64, damping: f64| Spring { stiffness, damping };
+    let spring = |stiffness: f64, damping: f64| Spring {
+        stiffness,
+        damping,
+        ..Spring::default()
+    };
     let fault = |springs: &[Spring]| match refusal(|arm| {
         arm.linkage.springs(arm.elbow, springs);
     }) {

@@ -127,7 +127,7 @@ pub(crate) fn stiff_spring(method: impl Method<Simulation>) -> String {
         hinge,
         &[Spring {
             stiffness: 1e12,
-            damping: 0.0,
+            ..Spring::default()
         }],
     );
     outcome(linkage, &Start::default(), method, 0.01)

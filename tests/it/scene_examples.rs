@@ -5,22 +5,20 @@ use linkdyn_kinematics::assembly::AssemblyError;
 use linkdyn_mechanisms::analysis::mobility;
 use linkdyn_mechanisms::{StartError, file};
 use linkdyn_tests::numbers::apart;
-use linkdyn_tests::scenes::{Ready, prepare, simulate};
+use linkdyn_tests::scenes::{Ready, index, prepare, simulate};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
 const SLIDER_CRANK: &str = include_str!("../../crates/mechanisms/scenes/slider_crank.toml");
 const RSSR: &str = include_str!("../../crates/mechanisms/scenes/rssr.toml");
 const BENNETT: &str = include_str!("../../crates/mechanisms/scenes/bennett.toml");
 const BRICARD: &str = include_str!("../../crates/mechanisms/scenes/bricard.toml");
+const RSSP: &str = include_str!("../../crates/mechanisms/scenes/rssp.toml");
+const STEWART: &str = include_str!("../../crates/mechanisms/scenes/stewart_platform.toml");
+const GOVERNOR: &str = include_str!("../../crates/mechanisms/scenes/flyball_governor.toml");
 
 fn ready(text: &str) -> Ready {
     prepare(file::scene("file", text).expect("a sound file"))
-}
-
-/// Place of a coordinate.
-fn index(ready: &Ready, name: &str) -> usize {
-    let at = ready.mechanism.coordinate_names().position(|there| there == name);
-    at.expect("there is such a coordinate")
 }
 
 #[test]
@@ -135,7 +133,7 @@ fn bennett_closes_with_three_redundant_equations() {
 }
 
 #[test]
-fn bricard_swings_on_its_curve_and_keeps_its_energy() {
+fn benchmark_08_bricard_swings_on_its_curve_and_keeps_its_energy() {
     let scene = ready(BRICARD);
     let mobility = mobility(&scene.mechanism, &scene.start.q).expect("a closed position");
     assert_eq!(
@@ -162,4 +160,91 @@ fn bricard_swings_on_its_curve_and_keeps_its_energy() {
         furthest = furthest.max(row.q[a1]);
     }
     assert!(furthest > 0.99 * PI, "{furthest}");
+}
+
+#[test]
+fn rssp_moves_its_slider_as_the_closed_form_says() {
+    let scene = ready(RSSP);
+    let (crank, slide) = (index(&scene, "crank"), index(&scene, "slide"));
+    let run = simulate(&scene, Adams::default(), 1e-10, 1.0, 0.01);
+    run.end.expect("runs to its end");
+    let along = Vector3::new(0.8, 0.0, 0.6);
+    let mut turned = 0.0_f64;
+    for row in run.rows {
+        let (sin, cos) = row.q[crank].sin_cos();
+        // From the slide's origin to the crank's pin: the rod ends where its length is 0.4.
+        let w = Vector3::new(0.1 * cos, 0.1 * sin - 0.05, 0.0);
+        let rate = Vector3::new(-0.1 * sin, 0.1 * cos, 0.0) * row.v[crank];
+        let root = (w.dot(&along).powi(2) - w.norm_squared() + 0.16).sqrt();
+        let place = w.dot(&along) + root;
+        let speed = rate.dot(&along) + (w.dot(&along) * rate.dot(&along) - w.dot(&rate)) / root;
+        assert!((row.q[slide] - place).abs() < 1e-11, "t = {}: {}", row.t, row.q[slide]);
+        assert!((row.v[slide] - speed).abs() < 1e-10, "t = {}: {}", row.t, row.v[slide]);
+        turned = row.q[crank];
+    }
+    assert!(turned > 2.0 * PI, "{turned}");
+}
+
+#[test]
+fn stewart_platform_has_legs_as_long_as_its_pose_says() {
+    let scene = ready(STEWART);
+    let mobility = mobility(&scene.mechanism, &scene.start.q).expect("a closed position");
+    assert_eq!((mobility.freedoms, mobility.redundant.len()), (6, 0));
+    let run = simulate(&scene, Adams::default(), 1e-10, 1.0, 0.02);
+    run.end.expect("runs to its end");
+    let pose = index(&scene, "pose.x");
+    let circle = |radius: f64, degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Vector3::new(radius * cos, radius * sin, 0.0)
+    };
+    let legs = [
+        (10.0, 50.0),
+        (110.0, 70.0),
+        (130.0, 170.0),
+        (230.0, 190.0),
+        (250.0, 290.0),
+        (350.0, 310.0),
+    ];
+    let first = run.rows[0].energy_balance();
+    let mut swing = 0.0_f64;
+    for row in &run.rows {
+        let q = &row.q[pose..pose + 7];
+        let origin = Vector3::new(q[0], q[1], q[2]);
+        let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[3], q[4], q[5], q[6]));
+        for (k, (base, ball)) in legs.into_iter().enumerate() {
+            let length = (origin + turn * circle(0.3, ball) - circle(0.5, base)).norm();
+            let found = row.q[index(&scene, &format!("leg{}", k + 1))];
+            // Points are written to six digits.
+            assert!((found - length).abs() < 1e-6, "t = {}: {found} for {length}", row.t);
+        }
+        assert!((row.energy_balance() - first).abs() < 1e-7, "t = {}", row.t);
+        swing = swing.max((q[2] - run.rows[0].q[pose + 2]).abs());
+    }
+    assert!(swing > 0.01, "{swing}");
+}
+
+#[test]
+fn flyball_governor_stays_at_the_angle_of_its_speed() {
+    let (m, sleeve, l, k, free) = (0.5, 1.0, 0.2, 100.0, 0.35);
+    let (angle, speed) = ("arm1 = 0.6510630589835664", "spindle = 15 ");
+    assert!(GOVERNOR.contains(angle) && GOVERNOR.contains(speed));
+    for omega in [12.0, 15.0, 20.0_f64] {
+        // Balance of ball and sleeve, the spring of length 2 l cos phi between pivot and sleeve.
+        let cosine = ((m + sleeve) * 9.81 + k * free) / (l * (m * omega * omega + 2.0 * k));
+        let phi = cosine.acos();
+        let text = GOVERNOR.replace(angle, &format!("arm1 = {phi}"));
+        let scene = ready(&text.replace(speed, &format!("spindle = {omega} ")));
+        let run = simulate(&scene, Adams::default(), 1e-11, 1.0, 0.02);
+        run.end.expect("runs to its end");
+        for row in &run.rows {
+            let q = |name| row.q[index(&scene, name)];
+            assert!(
+                (q("arm1") - phi).abs() < 1e-8 && (q("arm2") - phi).abs() < 1e-8,
+                "{omega}: {}",
+                q("arm1")
+            );
+            assert!((q("sleeve") + 2.0 * l * cosine).abs() < 1e-8);
+            assert!((q("spindle") - omega * row.t).abs() < 1e-8);
+        }
+    }
 }

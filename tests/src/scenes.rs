@@ -69,6 +69,15 @@ pub fn prepare(scene: Scene) -> Ready {
     }
 }
 
+/// Place of a coordinate among those of a scene.
+///
+/// # Panics
+/// If there is none of this name.
+pub fn index(ready: &Ready, name: &str) -> usize {
+    let at = ready.mechanism.coordinate_names().position(|there| there == name);
+    at.expect("there is such a coordinate")
+}
+
 /// A finished run.
 pub struct Finished {
     /// All rows.

@@ -27,6 +27,8 @@ pub enum Command {
     Analyse(AnalyseArgs),
     /// Say all that is wrong with a scene file, else draw its tree and count its freedoms
     Check(CheckArgs),
+    /// Draw a scene at its start, as SVG or PNG
+    Draw(DrawArgs),
     /// Write a commented scene file to begin with
     New(NewArgs),
     /// Print the JSON Schema of scene files, for editors
@@ -228,6 +230,16 @@ pub enum AnalysisArg {
 pub struct CheckArgs {
     /// Scene file, or name of a built-in scene
     pub scene: String,
+}
+
+/// Options of `linkdyn draw`.
+#[derive(Debug, Args)]
+pub struct DrawArgs {
+    /// Scene file, or name of a built-in scene
+    pub scene: String,
+    /// Picture to write, which ends in .svg or .png
+    #[arg(short, long, value_name = "PICTURE")]
+    pub out: PathBuf,
 }
 
 /// Options of `linkdyn new`.

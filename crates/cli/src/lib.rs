@@ -3,6 +3,7 @@
 pub mod analyse;
 pub mod args;
 pub mod check;
+pub mod draw;
 pub mod errors;
 pub mod figure;
 pub mod interrupt;

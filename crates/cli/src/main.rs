@@ -12,6 +12,7 @@ fn main() -> ExitCode {
         Command::Stability(args) => linkdyn_cli::stability::stability(&args),
         Command::Analyse(args) => linkdyn_cli::analyse::analyse(&args),
         Command::Check(args) => linkdyn_cli::check::check(&args),
+        Command::Draw(args) => linkdyn_cli::draw::draw(&args),
         Command::New(args) => linkdyn_cli::check::new(&args),
         Command::Schema => linkdyn_cli::check::schema(),
         Command::Scenes(args) => linkdyn_cli::scenes::list(&args),

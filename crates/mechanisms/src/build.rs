@@ -3,9 +3,11 @@
 use crate::clearance::ClearanceJoint;
 use crate::drive::CoordinateDrives;
 use crate::error::BuildError;
+use crate::limit::LimitStops;
 use crate::linkage::{JointItem, Linkage, Mount};
 use crate::mechanism::{Contact, Mechanism, NamedJoint, NamedLink, NamedLoop};
 use crate::spring::{self, JointSprings};
+use crate::strut::PlacedStrut;
 use linkdyn_dynamics::{Description, Guided, Load, ReactionLoad, System, SystemError};
 use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Tree};
 use std::sync::Arc;
@@ -24,7 +26,7 @@ impl Linkage {
         let mut joints = Vec::new();
         let mut loads: Vec<Arc<dyn Load>> = Vec::new();
         let mut reaction_loads: Vec<(LinkId, Arc<dyn ReactionLoad>)> = Vec::new();
-        let (mut springs, mut guided) = (Vec::new(), Vec::new());
+        let (mut springs, mut guided, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
         for (&index, &node) in placed.order.iter().zip(&placed.nodes) {
             let item = &self.joints[index];
             let (q, v) = (placed.tree.coordinate_range(node), placed.tree.speed_range(node));
@@ -48,6 +50,14 @@ impl Linkage {
                     guide: Arc::new(motion.clone()),
                 });
             }
+            if let Some(limit) = &item.limit {
+                let stops = Arc::new(LimitStops::new(&item.name, limit, q.start, v.start));
+                contacts.push(Contact {
+                    names: limit.point_names(&item.name).collect(),
+                    load: stops.clone(),
+                });
+                loads.push(stops);
+            }
             if let Some(friction) = &item.friction {
                 reaction_loads.push((node, Arc::new(friction.clone())));
             }
@@ -65,7 +75,6 @@ impl Linkage {
             loads.push(Arc::new(JointSprings(springs)));
         }
         let (mut closures, mut centred) = (Vec::new(), Vec::new());
-        let mut contacts = Vec::new();
         for cut in &self.cuts {
             let (one, two) = (placed.attachment(&cut.predecessor), placed.attachment(&cut.successor));
             let ideal = match &cut.rows {
@@ -77,14 +86,24 @@ impl Linkage {
                     let joint = Arc::new(ClearanceJoint::new(&cut.name, clearance, &ideal, **axis));
                     closures.push(joint.closure(&placed.tree, &ideal));
                     contacts.push(Contact {
-                        name: cut.name.clone(),
-                        joint: joint.clone(),
+                        names: clearance.model.point_names(&cut.name).collect(),
+                        load: joint.clone(),
                     });
                     loads.push(joint);
                 }
                 _ => closures.push(ideal.clone()),
             }
             centred.push(ideal);
+        }
+        for (_, acts, load) in &self.point_loads {
+            loads.push(Arc::new(load.placed(placed.attachment(&load.at), *acts)));
+        }
+        for (name, strut) in &self.struts {
+            loads.push(Arc::new(PlacedStrut {
+                name: name.clone(),
+                ends: [&strut.from, &strut.to].map(|end| placed.attachment(end)),
+                strut: *strut,
+            }));
         }
         // After the contacts, so that these come first among the loads with internals.
         loads.extend(self.loads.iter().cloned());

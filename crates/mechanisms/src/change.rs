@@ -36,11 +36,12 @@ impl Linkage {
         self.cuts.iter_mut().filter_map(|item| item.clearance.as_mut())
     }
 
-    /// Takes all drives and resistances away.
+    /// Takes all drives and resistances away, those on points and links too.
     pub fn clear_drives(&mut self) -> &mut Self {
         for item in &mut self.joints {
             item.drives.clear();
         }
+        self.point_loads.clear();
         self
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::drive::Drive;
 use crate::error::BuildError;
-use crate::linkage::{CutItem, JointItem, Linkage};
+use crate::linkage::{CutItem, JointItem, Linkage, Mount};
+use crate::point_load::Acts;
 use crate::prescribed::PrescribedMotion;
 use crate::spring::Spring;
 use linkdyn_friction::{BearingModel, Characteristic};
@@ -36,9 +37,19 @@ impl Linkage {
             .cuts
             .iter()
             .filter_map(|cut| Some((&cut.name, cut.clearance.as_ref()?)));
-        for name in with_clearance.flat_map(|(cut, clearance)| clearance.model.point_names(cut)) {
+        let with_limit = self.joints.iter().filter_map(|j| Some((&j.name, j.limit.as_ref()?)));
+        let in_limits = with_limit.flat_map(|(joint, limit)| limit.point_names(joint));
+        let in_clearances = with_clearance.flat_map(|(cut, clearance)| clearance.model.point_names(cut));
+        for name in in_limits.chain(in_clearances) {
             if !seen.insert(name.clone()) {
                 return Err(BuildError::DuplicateName { name });
+            }
+        }
+        seen.clear();
+        let loads = self.point_loads.iter().map(|(name, ..)| name);
+        for name in loads.chain(self.struts.iter().map(|(name, _)| name)) {
+            if !seen.insert(name.clone()) {
+                return Err(BuildError::DuplicateName { name: name.clone() });
             }
         }
         Ok(())
@@ -48,7 +59,7 @@ impl Linkage {
         if self.foreign {
             return Err(BuildError::Foreign {
                 what: "the handle of a joint",
-                name: "drive, springs, friction, prescribe, coordinate_names or clearance".into(),
+                name: "drive, springs, friction, limit, prescribe, coordinate_names or clearance".into(),
             });
         }
         for (name, inertia) in &self.links {
@@ -89,7 +100,57 @@ impl Linkage {
             }
         }
         self.cuts.iter().try_for_each(CutItem::check)?;
-        self.joints.iter().try_for_each(JointItem::check)
+        self.joints.iter().try_for_each(JointItem::check)?;
+        self.check_loads()
+    }
+
+    /// Forces, moments and struts.
+    fn check_loads(&self) -> Result<(), BuildError> {
+        let refuse = |what, name: &str, (parameter, value, expected)| {
+            let name = name.to_owned();
+            Err(BuildError::Load {
+                what,
+                name,
+                parameter,
+                value,
+                expected,
+            })
+        };
+        let place = |what, name: &str, at: &Mount| {
+            if at.link.0.is_some_and(|k| k >= self.links.len()) {
+                let name = name.to_owned();
+                return Err(BuildError::Foreign { what: "a link", name });
+            }
+            let defect = at.pose.defect();
+            if defect.is_nan() || defect > 1e-9 {
+                return refuse(what, name, ("error of its frame", defect, "zero, that of a rigid pose"));
+            }
+            Ok(())
+        };
+        for (name, acts, load) in &self.point_loads {
+            let what = match acts {
+                Acts::Force => "force",
+                Acts::Moment => "moment",
+            };
+            place(what, name, &load.at)?;
+            if let Some(fault) = load.fault() {
+                return refuse(what, name, fault);
+            }
+        }
+        for (name, strut) in &self.struts {
+            place("strut", name, &strut.from)?;
+            place("strut", name, &strut.to)?;
+            if strut.from.link == strut.to.link {
+                return Err(BuildError::SelfStrut {
+                    strut: name.clone(),
+                    link: self.link_name(strut.from.link),
+                });
+            }
+            if let Some(fault) = strut.fault() {
+                return refuse("strut", name, fault);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -128,6 +189,7 @@ impl JointItem {
             (!self.drives.is_empty(), "a drive"),
             (self.friction.is_some(), "friction"),
             (self.prescribed.is_some(), "a prescribed motion"),
+            (self.limit.is_some(), "a limit"),
         ];
         if let Some((_, what)) = needs_one.into_iter().find(|(there, _)| *there && coordinates != 1) {
             return Err(BuildError::NotOneCoordinate {
@@ -154,6 +216,10 @@ impl JointItem {
                 value,
                 expected,
             });
+        }
+        if let Some(limit) = &self.limit {
+            let checked = limit.validate();
+            checked.map_err(|source| BuildError::Limit { joint: joint(), source })?;
         }
         if let Some(friction) = &self.friction {
             let checked = friction

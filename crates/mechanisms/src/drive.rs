@@ -156,7 +156,7 @@ impl Drive {
         }
     }
 
-    fn stop_times(&self) -> Vec<f64> {
+    pub(crate) fn stop_times(&self) -> Vec<f64> {
         match self {
             Drive::Ramp { rise_time, .. } => vec![0.0, *rise_time],
             Drive::Custom { stop_times, .. } => stop_times.clone(),

@@ -1,6 +1,7 @@
 //! What can be wrong with a linkage.
 
 use crate::clearance::ClearanceError;
+use crate::limit::LimitError;
 use linkdyn_dynamics::{DynamicsError, SystemError};
 use linkdyn_friction::ParameterError;
 use linkdyn_kinematics::TreeError;
@@ -143,6 +144,36 @@ pub enum BuildError {
         joint: String,
         /// What is wrong.
         source: ParameterError,
+    },
+    /// A limit makes no sense.
+    #[error("limit of joint `{joint}`: {source}")]
+    Limit {
+        /// The joint.
+        joint: String,
+        /// What is wrong.
+        source: LimitError,
+    },
+    /// A parameter of a force, a moment or a strut is out of range.
+    #[error("{what} `{name}`: {parameter} = {value} must be {expected}")]
+    Load {
+        /// Force, moment or strut.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// The parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// A strut has both ends on the same link.
+    #[error("strut `{strut}` has both ends on link `{link}`, where it does nothing; give them different links")]
+    SelfStrut {
+        /// The strut.
+        strut: String,
+        /// The link.
+        link: String,
     },
     /// An inertia is impossible.
     #[error("link `{link}`: {source}")]

@@ -1,5 +1,6 @@
 //! Contacts made and lost: what loads keep between events, and what happens at one.
 
+use crate::contact_load::kept;
 use crate::simulation::Simulation;
 use linkdyn_dynamics::{Instant, InternalState};
 
@@ -22,7 +23,7 @@ pub struct ContactEvent {
     pub point: usize,
     /// Whether it is made, else lost.
     pub made: bool,
-    /// Speed of approach or of separation \[m/s\].
+    /// Speed of approach or of separation \[m/s\]; at the limit of a turn \[rad/s\].
     pub speed: f64,
     /// Whether a contact made is held: after many short hops in a row it counts as lost only when a larger gap opens.
     pub held: bool,
@@ -76,22 +77,22 @@ impl Simulation {
         let (mut contacts, mut first) = (self.mechanism.contacts.iter(), 0);
         system.ask_loads(&before, &mut self.work, |_, motion, place| {
             let Some(contact) = contacts.next() else { return };
-            let points = place.roots.clone().zip(0..contact.joint.points());
+            let points = place.roots.clone().zip(0..contact.load.points());
             for (_, point) in points.filter(|(root, _)| fired[*root]) {
-                let seen = contact.joint.observe(motion, point);
+                let seen = contact.load.observe(motion, point);
                 let made = seen.impact_speed == 0.0;
                 self.happened.push(ContactEvent {
                     point: first + point,
                     made,
                     speed: if made { seen.rate } else { -seen.rate },
-                    held: contact.joint.is_held(&self.memory.now[place.memory.clone()], point),
+                    held: kept::is_held(&self.memory.now[place.memory.clone()], point),
                 });
             }
-            first += contact.joint.points();
+            first += contact.load.points();
         });
     }
 
-    /// Makes the contacts that are there before anything has happened: where the journal of a start already lies in its bearing.
+    /// Makes the contacts that are there before anything has happened: where the journal of a start already lies in its bearing, or a coordinate at its limit.
     /// Root functions tell only of those that begin later. Tells whether there were any; [`run`](crate::run()) begins with this.
     pub fn begin(&mut self, t: f64, y: &mut [f64]) -> bool {
         self.happened.clear();
@@ -105,7 +106,7 @@ impl Simulation {
             .ask_loads(&at, &mut self.work, |_, motion, place| {
                 let Some(contact) = contacts.next() else { return };
                 for (point, root) in place.roots.clone().enumerate() {
-                    fired[root] = contact.joint.begins_in_contact(motion, point);
+                    fired[root] = contact.load.begins_in_contact(motion, point);
                 }
             });
         let any = fired.contains(&true);

@@ -130,5 +130,6 @@ fn springs(sde: &Sde, along: Along) -> [Spring; 3] {
     [z, y, x].map(|c| Spring {
         stiffness: c.stiffness,
         damping: c.damping,
+        rest: 0.0,
     })
 }

@@ -1,10 +1,13 @@
-//! The builder: links, joints, cut joints, drives, springs, friction and clearance by name, in any order.
+//! The builder: links, joints, cut joints and the loads on them by name, in any order.
 
 use crate::clearance::Clearance;
 use crate::drive::Drive;
 use crate::joint_friction::JointFriction;
+use crate::limit::Limit;
+use crate::point_load::{Acts, PointLoad};
 use crate::prescribed::PrescribedMotion;
 use crate::spring::Spring;
+use crate::strut::Strut;
 use linkdyn_dynamics::{Baumgarte, Formulation, Load, ReactionSolver, RigidInertia};
 use linkdyn_friction::{Bearing, Friction};
 use linkdyn_kinematics::{Joint, Pose, Row};
@@ -65,6 +68,8 @@ pub struct Linkage {
     pub(crate) links: Vec<(String, RigidInertia)>,
     pub(crate) joints: Vec<JointItem>,
     pub(crate) cuts: Vec<CutItem>,
+    pub(crate) point_loads: Vec<(String, Acts, PointLoad)>,
+    pub(crate) struts: Vec<(String, Strut)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) loads: Vec<Arc<dyn Load>>,
     /// Whether a joint was named by a handle of another linkage.
@@ -93,6 +98,7 @@ pub(crate) struct JointItem {
     pub(crate) springs: Vec<Spring>,
     pub(crate) friction: Option<JointFriction>,
     pub(crate) prescribed: Option<PrescribedMotion>,
+    pub(crate) limit: Option<Limit>,
 }
 
 #[derive(Clone, Debug)]
@@ -118,6 +124,8 @@ impl Linkage {
             links: Vec::new(),
             joints: Vec::new(),
             cuts: Vec::new(),
+            point_loads: Vec::new(),
+            struts: Vec::new(),
             loads: Vec::new(),
             foreign: false,
             flexible: false,
@@ -145,6 +153,7 @@ impl Linkage {
             springs: Vec::new(),
             friction: None,
             prescribed: None,
+            limit: None,
         });
         JointHandle(self.joints.len() - 1)
     }
@@ -237,6 +246,30 @@ impl Linkage {
             bearing: bearing.into(),
         };
         self.on(joint, |item| item.friction = Some(friction));
+        self
+    }
+
+    /// Puts stops at the ends of a joint's way; the joint must have one coordinate.
+    pub fn limit(&mut self, joint: JointHandle, limit: Limit) -> &mut Self {
+        self.on(joint, |item| item.limit = Some(limit));
+        self
+    }
+
+    /// Adds a force on a point of a link.
+    pub fn force(&mut self, name: &str, force: PointLoad) -> &mut Self {
+        self.point_loads.push((name.to_owned(), Acts::Force, force));
+        self
+    }
+
+    /// Adds a moment on a link.
+    pub fn moment(&mut self, name: &str, moment: PointLoad) -> &mut Self {
+        self.point_loads.push((name.to_owned(), Acts::Moment, moment));
+        self
+    }
+
+    /// Adds a spring with a damper between two points of two links or the ground.
+    pub fn strut(&mut self, name: &str, strut: Strut) -> &mut Self {
+        self.struts.push((name.to_owned(), strut));
         self
     }
 

@@ -1,6 +1,6 @@
 //! A built linkage: the equations of motion with names.
 
-use crate::clearance::ClearanceJoint;
+use crate::contact_load::ContactLoad;
 use crate::error::{MotionError, StartError};
 use linkdyn_dynamics::{DynamicsError, System};
 use linkdyn_friction::Bristle;
@@ -17,7 +17,7 @@ pub struct Mechanism {
     pub(crate) loops: Vec<NamedLoop>,
     /// All cut joints without their clearance.
     pub(crate) centred: Vec<Closure>,
-    /// Joints with clearance; they are the first of the loads with internals.
+    /// Joints with limits or clearance; they are the first of the loads with internals.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) coordinates: Vec<String>,
     pub(crate) speeds: Vec<String>,
@@ -48,18 +48,12 @@ pub(crate) struct NamedLoop {
     pub components: Vec<String>,
 }
 
-/// A joint with clearance by name.
+/// A joint with limits or clearance.
 #[derive(Clone, Debug)]
 pub(crate) struct Contact {
-    pub name: String,
-    pub joint: Arc<ClearanceJoint>,
-}
-
-impl Contact {
     /// Names of its contact points.
-    pub fn point_names(&self) -> impl Iterator<Item = String> + use<> {
-        self.joint.clearance.model.point_names(&self.name)
-    }
+    pub names: Vec<String>,
+    pub load: Arc<dyn ContactLoad>,
 }
 
 /// Coordinates and speeds to start from.
@@ -133,23 +127,21 @@ impl Mechanism {
         rubbing.map(|joint| self.speeds[joint.speed].as_str())
     }
 
-    /// Names of the contact points of joints with clearance, in the order of [`crate::Observation::contacts`].
+    /// Names of the contact points of joints with limits or clearance, in the order of [`crate::Observation::contacts`].
     pub fn contact_names(&self) -> impl Iterator<Item = String> {
-        self.contacts.iter().flat_map(Contact::point_names)
+        self.contacts.iter().flat_map(|contact| contact.names.iter().cloned())
     }
 
     /// Friction at each contact point.
     pub(crate) fn bristles(&self) -> impl Iterator<Item = Option<&Bristle>> {
         let contacts = self.contacts.iter();
-        contacts
-            .flat_map(|contact| std::iter::repeat_n(contact.joint.clearance.friction.as_ref(), contact.joint.points()))
+        contacts.flat_map(|contact| std::iter::repeat_n(contact.load.bristle(), contact.load.points()))
     }
 
-    /// Radial clearance at each contact point \[m\].
-    pub fn clearances(&self) -> impl Iterator<Item = f64> + '_ {
+    /// Radial clearance at each contact point \[m\]; none at limits.
+    pub fn clearances(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let contacts = self.contacts.iter();
-        contacts
-            .flat_map(|contact| std::iter::repeat_n(contact.joint.clearance.fit.clearance(), contact.joint.points()))
+        contacts.flat_map(|contact| std::iter::repeat_n(contact.load.clearance(), contact.load.points()))
     }
 
     /// Whether a joint of the mechanism has friction.
@@ -166,7 +158,7 @@ impl Mechanism {
             return None;
         }
         Some(match self.contacts.first() {
-            Some(contact) => format!("joint `{}` has clearance", contact.name),
+            Some(contact) => contact.load.describe(),
             None => "a load has states, integrals or events of its own".into(),
         })
     }
@@ -257,7 +249,13 @@ impl Mechanism {
         for (link, _) in tree.joints() {
             let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
             if q.contains(&index) {
-                return Ok(v.start + (index - q.start).saturating_sub(q.len() - v.len()));
+                let local = index - q.start;
+                let turned =
+                    before_quaternion(q.len(), v.len()).map_or(local, |slides| match local.checked_sub(slides) {
+                        None => local,
+                        Some(part) => slides + part.saturating_sub(1),
+                    });
+                return Ok(v.start + turned);
             }
         }
         Ok(index)
@@ -273,8 +271,14 @@ impl Mechanism {
         let tree = self.system.tree();
         tree.joints().iter().find_map(|(link, _)| {
             let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
-            v.contains(&speed)
-                .then(|| q.start + (speed - v.start) + (q.len() - v.len()))
+            let local = speed.checked_sub(v.start).filter(|local| *local < v.len())?;
+            let behind = before_quaternion(q.len(), v.len()).is_some_and(|slides| local >= slides);
+            Some(q.start + local + usize::from(behind))
         })
     }
+}
+
+/// How many coordinates of a joint come before its quaternion, if it has one: the slides of a free joint.
+fn before_quaternion(coordinates: usize, speeds: usize) -> Option<usize> {
+    (coordinates > speeds).then(|| speeds.saturating_sub(3))
 }

@@ -24,7 +24,7 @@ pub struct Observation {
     pub reactions: Vec<Reaction>,
     /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
     pub friction: Vec<f64>,
-    /// Contact points of joints with clearance.
+    /// Contact points of joints with limits or clearance.
     pub contacts: Vec<ContactPoint>,
     /// Energies.
     pub energy: Energy,
@@ -97,7 +97,7 @@ impl Simulation {
         y
     }
 
-    /// Contact points of joints with clearance at `t` and state vector `y`.
+    /// Contact points of joints with limits or clearance at `t` and state vector `y`.
     pub fn contact_points(&mut self, t: f64, y: &[f64], points: &mut Vec<ContactPoint>) {
         let at = self.layout.instant(t, y, self.memory.at(t));
         contact_points(&self.mechanism, &at, &mut self.work, points);
@@ -123,8 +123,9 @@ impl Simulation {
         }
         names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
         for contact in &mechanism.contacts {
-            for name in contact.point_names() {
-                names.extend(contact.joint.columns().map(|column| format!("contact.{name}.{column}")));
+            for name in &contact.names {
+                let columns = contact.load.columns().into_iter();
+                names.extend(columns.map(|column| format!("contact.{name}.{column}")));
             }
         }
         names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
@@ -135,7 +136,7 @@ impl Simulation {
     }
 }
 
-/// Clearances are the first of the loads with internals.
+/// Limits and clearances are the first of the loads with internals.
 fn contact_points(mechanism: &Mechanism, at: &Instant<'_>, work: &mut Workspace, points: &mut Vec<ContactPoint>) {
     points.clear();
     if mechanism.contacts.is_empty() {
@@ -144,7 +145,7 @@ fn contact_points(mechanism: &Mechanism, at: &Instant<'_>, work: &mut Workspace,
     let mut contacts = mechanism.contacts.iter();
     mechanism.system.ask_loads(at, work, |_, motion, _| {
         if let Some(contact) = contacts.next() {
-            points.extend((0..contact.joint.points()).map(|point| contact.joint.observe(motion, point)));
+            points.extend((0..contact.load.points()).map(|point| contact.load.observe(motion, point)));
         }
     });
 }

@@ -83,7 +83,7 @@ impl Layout {
 /// costs a quarter fewer evaluations for the same error of the crank angle than equal tolerances do.
 pub const SPEED_SCALE: f64 = 10.0;
 
-/// As [`SPEED_SCALE`], with clearance \[1/s\]. Contacts vibrate with 1e4 1/s and more; between 1e2 and 1e5 this value is about the best
+/// As [`SPEED_SCALE`], with clearance or limits \[1/s\]. Contacts vibrate with 1e4 1/s and more; between 1e2 and 1e5 this value is about the best
 /// for the error of the RSUP scene against its evaluations.
 pub const CONTACT_SPEED_SCALE: f64 = 1e3;
 
@@ -159,7 +159,7 @@ impl Simulation {
     /// Tolerances for an integration: `relative` for all of the state, `absolute` for coordinates \[rad, m\] and bristles \[m\],
     /// [`SPEED_SCALE`] times that for speeds. Work and integrals follow the motion and are not controlled.
     ///
-    /// With clearance a crank that has turned many times must be known as well as one that has not, since penetrations are
+    /// With clearance or limits a crank that has turned many times must be known as well as one that has not, since penetrations are
     /// micrometres: then `absolute` alone counts, and [`CONTACT_SPEED_SCALE`] times that for speeds.
     pub fn settings(&self, relative: f64, absolute: f64) -> Settings {
         let contacts = !self.mechanism.contacts.is_empty();

@@ -2,7 +2,7 @@
 
 use linkdyn_dynamics::{Load, Loads, Motion};
 
-/// A spring with a damper on one coordinate, relaxed where the coordinate is zero: `-stiffness q - damping v`.
+/// A spring with a damper on one coordinate: `-stiffness (q - rest) - damping v`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -11,11 +11,17 @@ pub struct Spring {
     pub stiffness: f64,
     /// Damping \[N m s/rad, N s/m\].
     pub damping: f64,
+    /// Coordinate at which the spring is relaxed \[rad, m\]; zero unless given.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub rest: f64,
 }
 
 impl Spring {
     /// First parameter that is out of range: its name, value and what would be right.
     pub(crate) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
+        if !self.rest.is_finite() {
+            return Some(("rest", self.rest, "a finite number"));
+        }
         let parameters = [("stiffness", self.stiffness), ("damping", self.damping)];
         let wrong = parameters
             .into_iter()
@@ -42,7 +48,7 @@ impl Load for JointSprings {
         let mut storing = 0.0;
         for placed in &self.0 {
             let (q, v) = (motion.q[placed.coordinate], motion.v[placed.speed]);
-            let elastic = placed.spring.stiffness * q;
+            let elastic = placed.spring.stiffness * (q - placed.spring.rest);
             loads.add(placed.speed, -elastic - placed.spring.damping * v);
             storing += elastic * v;
         }
@@ -50,7 +56,10 @@ impl Load for JointSprings {
     }
 
     fn potential_energy(&self, motion: &Motion<'_>) -> f64 {
-        let energy = |placed: &Placed| 0.5 * placed.spring.stiffness * motion.q[placed.coordinate].powi(2);
+        let energy = |placed: &Placed| {
+            let way = motion.q[placed.coordinate] - placed.spring.rest;
+            0.5 * placed.spring.stiffness * way * way
+        };
         self.0.iter().map(energy).sum()
     }
 }

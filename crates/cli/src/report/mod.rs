@@ -178,7 +178,7 @@ fn examine(
         limit: Limit::new(budget, interrupt),
     };
     let plans = references(variant);
-    let clearance = ready.mechanism.clearances().reduce(f64::min);
+    let clearance = ready.mechanism.clearances().flatten().reduce(f64::min);
     let scale = clearance.unwrap_or(1.0).min(1.0);
     let folder = cache::folder(args.cache.as_deref()).filter(|_| !args.no_cache);
     let cache = folder.and_then(|folder| Cache::new(&folder, &ready, &plans, bench.grid));

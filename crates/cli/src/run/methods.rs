@@ -108,7 +108,7 @@ impl Plan {
             .variant
             .clearance
             .map(|_| args.variant.clearance_size.unwrap_or(CLEARANCE))
-            .or_else(|| prepared.mechanism.clearances().reduce(f64::min));
+            .or_else(|| prepared.mechanism.clearances().flatten().reduce(f64::min));
         let (usual, loosest) = match clearance {
             Some(size) => (CONTACT_TOLERANCE * size, CONTACT_LOOSEST * size),
             // Elastic links are stiff.

@@ -38,7 +38,7 @@ pub struct Names<'a> {
     /// Contact points.
     pub contacts: Vec<String>,
     /// Radial clearance of each of them \[m\].
-    pub clearances: Vec<f64>,
+    pub clearances: Vec<Option<f64>>,
     /// The output coordinate.
     pub output: Option<&'a str>,
     /// Whether joint reactions were found.
@@ -109,11 +109,11 @@ pub fn draw(folder: &mut RunFolder, names: &Names<'_>, curves: &[Curve<'_>]) -> 
     save(folder, "joint-loads", &loads)
 }
 
-/// Force of a contact point, and path of the journal there.
+/// Force of a contact point, and path of the journal in a clearance.
 fn contact(
     folder: &mut RunFolder,
     names: &Names<'_>,
-    (k, name, clearance): (usize, &str, f64),
+    (k, name, clearance): (usize, &str, Option<f64>),
     curves: &[Curve<'_>],
 ) -> Result<(), CliError> {
     let touching = || {
@@ -130,6 +130,9 @@ fn contact(
         &format!("contact-force-{name}"),
         &Figure::new(title.clone()).columns(1).panel(force),
     )?;
+    let Some(clearance) = clearance else {
+        return Ok(());
+    };
     let mut figure = Figure::new(format!("{title}, journal in bearing"))
         .columns(touching().count().max(1))
         .size(PATH_WIDTH * touching().count().max(1) as u32, PATH_HEIGHT);

@@ -12,7 +12,7 @@ const CONTACT_TOLERANCE: f64 = 1e-6;
 
 /// Tolerance for a scene.
 pub fn tolerance(prepared: &Prepared) -> f64 {
-    let clearance = prepared.mechanism.clearances().reduce(f64::min);
+    let clearance = prepared.mechanism.clearances().flatten().reduce(f64::min);
     clearance.map_or(TOLERANCE, |size| CONTACT_TOLERANCE * size)
 }
 

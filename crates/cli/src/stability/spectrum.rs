@@ -139,7 +139,7 @@ fn samples(prepared: &Prepared, until: f64, limit: &Limit, heard: &mut dyn FnMut
 fn eigenvalues(simulation: &mut Simulation, sample: &Sample) -> Result<Vec<Complex<f64>>, String> {
     let layout = simulation.layout().clone();
     let (dim, count) = (layout.len(), layout.work.start);
-    let (scale, speeds) = match simulation.mechanism().clearances().reduce(f64::min) {
+    let (scale, speeds) = match simulation.mechanism().clearances().flatten().reduce(f64::min) {
         Some(size) => (size, CONTACT_SPEED_SCALE),
         None => (1.0, SPEED_SCALE),
     };

@@ -1,33 +1,12 @@
 //! The joint with clearance as a load with states of its own.
 
 use super::{Clearance, ClearanceModel, ContactIntegrals, ContactPoint, Side};
+use crate::contact_load::{ContactLoad, kept};
 use linkdyn_contact::{Centre, NormalForce, NormalModel, Skewed, Touch};
 use linkdyn_dynamics::{Internals, Load, Loads, Motion};
-use linkdyn_friction::BristleModel;
+use linkdyn_friction::{Bristle, BristleModel};
 use linkdyn_kinematics::{Attachment, Closure, Positions, Row, Tree, Velocities, Wrench};
 use nalgebra::Vector3;
-
-/// What a contact point keeps between events.
-mod memory {
-    /// Speed of penetration at the beginning of the contact; zero while apart.
-    pub const IMPACT_SPEED: usize = 0;
-    /// Time at which the last contact was lost.
-    pub const LOST: usize = 1;
-    /// Number of hops in a row that were too short to matter.
-    pub const HOPS: usize = 2;
-    /// Gap that must open before the contact counts as lost.
-    pub const HOLD: usize = 3;
-    /// How many of these there are.
-    pub const COUNT: usize = 4;
-}
-
-/// A hop is short if impact speed times duration, about four times the greatest gap, is below this share of the clearance.
-const SHORT_HOP: f64 = 1e-3;
-/// After so many short hops in a row the contact is held: it counts as lost only when a gap of [`HELD_GAP`] opens, and until then the
-/// force law, which is continuous and zero across a gap, goes on without events.
-const HOPS: f64 = 32.0;
-/// Gap that ends a held contact, as a share of the clearance.
-const HELD_GAP: f64 = 1e-2;
 
 /// A joint with clearance as a load.
 #[derive(Debug)]
@@ -78,22 +57,6 @@ impl ClearanceJoint {
             rows.extend(ideal.rows().iter().filter(|row| matches!(row, Row::Angle { .. })));
         }
         Closure::with_rows(tree, *ideal.predecessor(), *ideal.successor(), rows)
-    }
-
-    /// Number of contact points.
-    pub fn points(&self) -> usize {
-        self.clearance.model.points()
-    }
-
-    /// Columns of a contact point in result files.
-    pub fn columns(&self) -> impl Iterator<Item = &'static str> {
-        let planar = ["depth", "rate", "normal", "tangent", "bristle", "impact_speed"];
-        let axial: &[&str] = if self.bristles() == 2 {
-            &["tangent_axial", "bristle_axial"]
-        } else {
-            &[]
-        };
-        planar.into_iter().chain(axial.iter().copied())
     }
 
     /// Bristles at each point: one along the tangent in the plane, two in space.
@@ -167,8 +130,43 @@ impl ClearanceJoint {
         }
     }
 
-    /// What can be seen of contact point `point`.
-    pub fn observe(&self, motion: &Motion<'_>, point: usize) -> ContactPoint {
+    fn journal_in_bearing(&self, pair: &Pair, motion: &Motion<'_>) -> [f64; 2] {
+        let frame = motion.positions.pose(self.bearing.link) * self.bearing.pose;
+        let e = frame.rotation.tr_mul(&(pair.journal.point - pair.bearing.point));
+        self.plane.map(|direction| direction.dot(&e))
+    }
+
+    /// Bristles and impact speed of a point.
+    fn kept<'a>(&self, motion: &Motion<'a>, point: usize) -> (&'a [f64], f64) {
+        let bristles = self.bristles();
+        let states = &motion.internal.states[point * bristles..(point + 1) * bristles];
+        (states, kept::impact_speed(motion.internal.memory, point))
+    }
+}
+
+/// A frame's origin and axis in motion.
+fn centre(at: &Attachment, axis: &Vector3<f64>, positions: &Positions, velocities: &Velocities) -> Centre {
+    let node = &positions.nodes()[at.link.node()];
+    let twist = &velocities.nodes()[at.link.node()];
+    let arm = node.rotation * at.pose.origin;
+    Centre {
+        point: node.origin + arm,
+        velocity: twist.linear + twist.angular.cross(&arm),
+        spin: twist.angular,
+        axis: node.rotation * (at.pose.rotation * axis),
+    }
+}
+
+impl ContactLoad for ClearanceJoint {
+    fn describe(&self) -> String {
+        format!("joint `{}` has clearance", self.name)
+    }
+
+    fn points(&self) -> usize {
+        self.clearance.model.points()
+    }
+
+    fn observe(&self, motion: &Motion<'_>, point: usize) -> ContactPoint {
         let pair = self.pair(motion);
         let (bristles, impact_speed) = self.kept(motion, point);
         let mut seen = ContactPoint {
@@ -191,49 +189,20 @@ impl ClearanceJoint {
         seen
     }
 
-    fn journal_in_bearing(&self, pair: &Pair, motion: &Motion<'_>) -> [f64; 2] {
-        let frame = motion.positions.pose(self.bearing.link) * self.bearing.pose;
-        let e = frame.rotation.tr_mul(&(pair.journal.point - pair.bearing.point));
-        self.plane.map(|direction| direction.dot(&e))
-    }
-
-    /// Whether a point to which nothing has happened yet is in contact.
-    pub fn begins_in_contact(&self, motion: &Motion<'_>, point: usize) -> bool {
-        let kept = &motion.internal.memory[point * memory::COUNT..(point + 1) * memory::COUNT];
-        if kept.iter().any(|&number| number != 0.0) {
-            return false;
+    fn columns(&self) -> Vec<&'static str> {
+        let mut columns = ["depth", "rate", "normal", "tangent", "bristle", "impact_speed"].to_vec();
+        if self.bristles() == 2 {
+            columns.extend(["tangent_axial", "bristle_axial"]);
         }
-        let pair = self.pair(motion);
-        let (gap, rate) = (self.gaps(&pair)[point], self.gap_rates(&pair)[point]);
-        gap < 0.0 || (gap == 0.0 && rate < 0.0)
+        columns
     }
 
-    /// Whether a contact is held, by the memory of the joint.
-    pub fn is_held(&self, memory: &[f64], point: usize) -> bool {
-        memory[point * memory::COUNT + memory::HOLD] > 0.0
+    fn bristle(&self) -> Option<&Bristle> {
+        self.clearance.friction.as_ref()
     }
 
-    /// Bristles and impact speed of a point.
-    fn kept<'a>(&self, motion: &Motion<'a>, point: usize) -> (&'a [f64], f64) {
-        let bristles = self.bristles();
-        let states = &motion.internal.states[point * bristles..(point + 1) * bristles];
-        (
-            states,
-            motion.internal.memory[point * memory::COUNT + memory::IMPACT_SPEED],
-        )
-    }
-}
-
-/// A frame's origin and axis in motion.
-fn centre(at: &Attachment, axis: &Vector3<f64>, positions: &Positions, velocities: &Velocities) -> Centre {
-    let node = &positions.nodes()[at.link.node()];
-    let twist = &velocities.nodes()[at.link.node()];
-    let arm = node.rotation * at.pose.origin;
-    Centre {
-        point: node.origin + arm,
-        velocity: twist.linear + twist.angular.cross(&arm),
-        spin: twist.angular,
-        axis: node.rotation * (at.pose.rotation * axis),
+    fn clearance(&self) -> Option<f64> {
+        Some(self.clearance.fit.clearance())
     }
 }
 
@@ -243,7 +212,7 @@ impl Load for ClearanceJoint {
         Internals {
             states: points * self.bristles(),
             integrals: points * ContactIntegrals::COUNT,
-            memory: points * memory::COUNT,
+            memory: points * kept::COUNT,
             roots: points,
         }
     }
@@ -291,14 +260,13 @@ impl Load for ClearanceJoint {
             loads.stores(storing);
             let power = force.power(&pair.bearing, &pair.journal);
             let damping_loss = normal.value * touch.rate - storing;
-            let integrals = [
+            let integrals = ContactIntegrals {
                 damping_loss,
-                -power - normal.value * touch.rate,
-                normal.value,
-                normal.value * normal.value,
-            ];
-            loads.integral_rates[point * ContactIntegrals::COUNT..(point + 1) * ContactIntegrals::COUNT]
-                .copy_from_slice(&integrals);
+                friction_loss: -power - normal.value * touch.rate,
+                impulse: normal.value,
+                square: normal.value * normal.value,
+            };
+            integrals.write(&mut loads.integral_rates[point * ContactIntegrals::COUNT..]);
         }
     }
 
@@ -317,16 +285,10 @@ impl Load for ClearanceJoint {
             .sum()
     }
 
-    /// Positive while the contact stays what it is: the gap while apart, the depth while in contact.
     fn roots(&self, motion: &Motion<'_>, roots: &mut [f64]) {
         let gaps = self.gaps(&self.pair(motion));
         for (point, (root, gap)) in roots.iter_mut().zip(gaps).enumerate() {
-            let kept = &motion.internal.memory[point * memory::COUNT..];
-            *root = if kept[memory::IMPACT_SPEED] > 0.0 {
-                kept[memory::HOLD] - gap
-            } else {
-                gap
-            };
+            *root = kept::root(motion.internal.memory, point, gap);
         }
     }
 
@@ -335,23 +297,11 @@ impl Load for ClearanceJoint {
         let rates = self.gap_rates(&pair);
         let (touches, bristles) = (self.touches_or_none(&pair), self.bristles());
         for point in (0..self.points()).filter(|&point| fired[point]) {
-            let kept = &mut memory[point * memory::COUNT..(point + 1) * memory::COUNT];
             let z = &mut states[point * bristles..(point + 1) * bristles];
             z.fill(0.0);
-            if kept[memory::IMPACT_SPEED] > 0.0 {
-                kept[memory::IMPACT_SPEED] = 0.0;
-                kept[memory::HOLD] = 0.0;
-                kept[memory::LOST] = motion.t;
+            let made = kept::switch(memory, point, motion.t, -rates[point], self.clearance.fit.clearance());
+            if !made {
                 continue;
-            }
-            // A journal that only grazes still makes contact; the law has a floor for its speed.
-            let speed = (-rates[point]).max(f64::MIN_POSITIVE);
-            kept[memory::IMPACT_SPEED] = speed;
-            let hop = speed * (motion.t - kept[memory::LOST]);
-            let short = hop < SHORT_HOP * self.clearance.fit.clearance();
-            kept[memory::HOPS] = if short { kept[memory::HOPS] + 1.0 } else { 0.0 };
-            if kept[memory::HOPS] >= HOPS {
-                kept[memory::HOLD] = HELD_GAP * self.clearance.fit.clearance();
             }
             if let (Some(model), Some(touch)) = (&self.clearance.friction, touches[point]) {
                 let start = self.clearance.bristle_start;

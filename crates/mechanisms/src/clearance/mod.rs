@@ -107,10 +107,10 @@ impl Clearance {
     }
 }
 
-/// One contact point at an instant.
+/// One contact point at an instant. At the [limit](crate::Limit) of a turn rad stand for m and N m for N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactPoint {
-    /// Penetration \[m\]; negative while journal and bearing are apart.
+    /// Penetration \[m\]; negative while apart.
     pub depth: f64,
     /// Its rate \[m/s\].
     pub rate: f64,
@@ -132,7 +132,7 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// Writes the numbers of [`ClearanceJoint::columns`].
+    /// Writes the numbers of the columns of its load.
     pub(crate) fn write(&self, row: &mut Vec<f64>) {
         let [tangent, axial] = self.tangent;
         let [bristle, axial_bristle] = self.bristle;
@@ -169,5 +169,11 @@ impl ContactIntegrals {
             impulse,
             square,
         }
+    }
+
+    /// Writes them to the first of `values`.
+    pub(crate) fn write(&self, values: &mut [f64]) {
+        let all = [self.damping_loss, self.friction_loss, self.impulse, self.square];
+        values[..Self::COUNT].copy_from_slice(&all);
     }
 }

@@ -1,10 +1,9 @@
 //! Clearance of a scene file's cut joints: its format, and how it is read.
 
+use super::contact::ContactItem;
 use super::fault::Faults;
 use crate::clearance::{Clearance, ClearanceModel, Side};
-use linkdyn_contact::{
-    ContactLaw, Damping, Fit, ForcePoint, KelvinVoigt, Material, NormalLaw, NormalModel, ball_in_socket,
-};
+use linkdyn_contact::{Fit, ForcePoint};
 use linkdyn_friction::{Bristle, BristleModel, BristleStart, ElastoPlastic, LuGre};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -38,51 +37,6 @@ fn predecessor() -> Side {
     Side::Predecessor
 }
 
-/// A law of contact.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "snake_case")]
-pub enum ContactItem {
-    /// The family of Hunt and Crossley, by stiffness: `K depth^n (1 + factor rate/impact speed)`.
-    Family {
-        /// Stiffness K \[N/m^n\].
-        stiffness: f64,
-        /// Exponent n, at least 1; 1.5 unless given.
-        #[serde(default = "hertz")]
-        exponent: f64,
-        /// How energy is lost; not at all unless given.
-        #[serde(default = "elastic")]
-        damping: Damping,
-        /// Floor of the impact speed \[m/s\]; 1e-6 unless given.
-        #[serde(default = "least_impact_speed")]
-        least_impact_speed: f64,
-    },
-    /// The same with exponent 1.5 and Hertz's stiffness of a ball in a socket with the radii of pin and hole.
-    Hertz {
-        /// Material of both parts.
-        material: Material,
-        /// How energy is lost; not at all unless given.
-        #[serde(default = "elastic")]
-        damping: Damping,
-        /// Floor of the impact speed \[m/s\]; 1e-6 unless given.
-        #[serde(default = "least_impact_speed")]
-        least_impact_speed: f64,
-    },
-    /// A linear spring and damper.
-    KelvinVoigt(KelvinVoigt),
-}
-
-fn hertz() -> f64 {
-    1.5
-}
-
-fn elastic() -> Damping {
-    Damping::Hertz
-}
-
-fn least_impact_speed() -> f64 {
-    NormalLaw::LEAST_IMPACT_SPEED
-}
-
 /// A bristle model of friction.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
@@ -107,9 +61,11 @@ pub(super) fn read(name: &str, item: &ClearanceItem, faults: &mut Faults<'_>) ->
     let fit = fit
         .map_err(|error| faults.add(&key(error.field), error.to_string()))
         .ok();
-    let law = law(fit, &item.contact)
-        .map_err(|message| faults.add(&key("contact"), message))
-        .ok();
+    // Without a fit, what is wrong with the radii is told already.
+    let law = fit.and_then(|fit| {
+        let law = item.contact.law(Some(fit));
+        law.map_err(|message| faults.add(&key("contact"), message)).ok()
+    });
     let friction = item.friction.as_ref().map(|friction| match *friction {
         BristleItem::Lugre(lugre) => lugre.into(),
         BristleItem::ElastoPlastic(model) => model.into(),
@@ -132,44 +88,9 @@ pub(super) fn read(name: &str, item: &ClearanceItem, faults: &mut Faults<'_>) ->
         fit: fit?,
         bearing: item.bearing,
         model,
-        law: law??,
+        law: law?,
         friction,
         bristle_start: item.bristle_start,
         force_point: item.force_point,
     })
-}
-
-/// The law of contact, or what is wrong with it; none without the radii that it needs.
-fn law(fit: Option<Fit>, item: &ContactItem) -> Result<Option<ContactLaw>, String> {
-    let family = |stiffness: f64, exponent: f64, damping: Damping, least: f64| {
-        let law = NormalLaw::new(stiffness, exponent, damping).and_then(|law| law.with_least_impact_speed(least));
-        law.map(|law| Some(law.into())).map_err(|error| error.to_string())
-    };
-    match *item {
-        ContactItem::Family {
-            stiffness,
-            exponent,
-            damping,
-            least_impact_speed,
-        } => family(stiffness, exponent, damping, least_impact_speed),
-        ContactItem::Hertz {
-            material,
-            damping,
-            least_impact_speed,
-        } => {
-            let compliance = 2.0 * material.compliance().map_err(|error| error.to_string())?;
-            let Some(fit) = fit else { return Ok(None) };
-            let stiffness = ball_in_socket(fit.bearing_radius(), fit.journal_radius(), compliance);
-            family(
-                stiffness.map_err(|error| error.to_string())?,
-                hertz(),
-                damping,
-                least_impact_speed,
-            )
-        }
-        ContactItem::KelvinVoigt(law) => {
-            law.validate().map_err(|error| error.to_string())?;
-            Ok(Some(law.into()))
-        }
-    }
 }

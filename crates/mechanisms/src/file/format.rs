@@ -3,6 +3,7 @@
 use super::beam::BeamItem;
 use super::clearance::ClearanceItem;
 use super::friction::FrictionItem;
+use super::points::{LimitItem, PointLoadItem, StrutItem};
 use super::prescribed::PrescribedItem;
 use super::quantity::Quantity;
 use indexmap::IndexMap;
@@ -25,6 +26,15 @@ pub struct SceneFile {
     pub links: IndexMap<String, LinkItem>,
     /// The joints by name.
     pub joints: IndexMap<String, JointItem>,
+    /// Forces on points of links by name.
+    #[serde(default)]
+    pub forces: IndexMap<String, PointLoadItem>,
+    /// Moments on links by name.
+    #[serde(default)]
+    pub moments: IndexMap<String, PointLoadItem>,
+    /// Springs with dampers between two points by name.
+    #[serde(default)]
+    pub struts: IndexMap<String, StrutItem>,
     /// Where the linkage starts.
     #[serde(default)]
     pub start: StartItem,
@@ -115,6 +125,8 @@ pub struct JointItem {
     pub prescribed: Option<PrescribedItem>,
     /// Clearance of a revolute joint, which is cut then.
     pub clearance: Option<ClearanceItem>,
+    /// Stops at the ends of the way of its one coordinate.
+    pub limit: Option<LimitItem>,
 }
 
 /// Kinds of joints.
@@ -221,7 +233,7 @@ pub enum DriveItem {
     },
 }
 
-/// A spring with a damper, relaxed where the coordinate is zero.
+/// A spring with a damper.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringItem {
@@ -231,6 +243,9 @@ pub struct SpringItem {
     /// Damping \[N m s/rad, N s/m\].
     #[serde(default)]
     pub damping: f64,
+    /// Coordinate at which it is relaxed \[rad, m\]; zero unless given.
+    #[serde(default)]
+    pub rest: Quantity,
 }
 
 /// A guess of the coordinates, from which the loops are closed.

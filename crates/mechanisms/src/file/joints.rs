@@ -36,8 +36,8 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
         } else {
             joint(name, item, faults)
         };
-        let predecessor = mount(links, name, "predecessor", &item.predecessor, faults);
-        let successor = mount(links, name, "successor", &item.successor, faults);
+        let predecessor = mount(links, &["joints", name, "predecessor"], &item.predecessor, faults);
+        let successor = mount(links, &["joints", name, "successor"], &item.successor, faults);
         if let (Some(one), Some(two)) = (predecessor, successor)
             && one.link == two.link
         {
@@ -190,6 +190,7 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
         (!item.drives.is_empty(), "drives"),
         (!item.springs.is_empty(), "springs"),
         (item.friction.is_some(), "friction"),
+        (item.limit.is_some(), "limit"),
         (item.coordinates.is_some(), "coordinates"),
         (item.prescribed.is_some(), "prescribed"),
     ];
@@ -305,13 +306,15 @@ fn of_kind(kind: Kind, first: Unit<Vector3<f64>>, second: Unit<Vector3<f64>>, le
     }
 }
 
-fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
+/// The frame on a link to which `keys` lead.
+pub(super) fn mount(links: &Links, keys: &[&str], item: &MountItem, faults: &mut Faults<'_>) -> Option<Mount> {
+    let below = |more: &[&'static str]| [keys, more].concat();
     let link_name = item.link.as_deref().unwrap_or("ground");
     let link = links.find(link_name);
     if link.is_none() && !faults.lacks_all(&["links"]) {
         let known = || links.names().chain(["ground"]);
         let message = unknown("link", link_name, nearest(link_name, known()), known());
-        faults.add(&["joints", name, side, "link"], message);
+        faults.add(&below(&["link"]), message);
     }
     let pose = match (item.rotation, item.turn) {
         (Some(rows), None) => Pose::from_rows(rows, item.point),
@@ -320,7 +323,7 @@ fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut F
             let axis = Unit::try_new(Vector3::from(turn.axis), f64::MIN_POSITIVE);
             let Some(axis) = axis.filter(|axis| axis.iter().all(|x| x.is_finite())) else {
                 let message = "must be three finite numbers, not all zero";
-                faults.add(&["joints", name, side, "turn", "axis"], message);
+                faults.add(&below(&["turn", "axis"]), message);
                 return None;
             };
             Pose {
@@ -329,10 +332,7 @@ fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut F
             }
         }
         (Some(_), Some(_)) => {
-            faults.add(
-                &["joints", name, side, "turn"],
-                "says again what `rotation` says; give one of them",
-            );
+            faults.add(&below(&["turn"]), "says again what `rotation` says; give one of them");
             return None;
         }
     };
@@ -341,7 +341,7 @@ fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut F
         let message = format!(
             "point and rotation must be finite and the rotation proper, but it is off by {defect:e} (allowed: 1e-9)"
         );
-        faults.add(&["joints", name, side], message);
+        faults.add(keys, message);
         return None;
     }
     if !item.end {
@@ -349,7 +349,7 @@ fn mount(links: &Links, name: &str, side: &str, item: &MountItem, faults: &mut F
     }
     let mount = links.at_end(link_name, pose);
     if mount.is_none() && link.is_some() && !faults.lacks(&["links", link_name]) {
-        faults.add(&["joints", name, side, "end"], "only a beam has an end");
+        faults.add(&below(&["end"]), "only a beam has an end");
     }
     mount
 }

@@ -1,12 +1,14 @@
-//! What sits in the joints of a scene file: drives, springs, friction, prescribed motions.
+//! What sits in the joints of a scene file: drives, springs, friction, limits, prescribed motions.
 
 use super::fault::Faults;
 use super::format::{DriveItem, JointItem, Kind};
 use super::friction;
 use super::joints::any_of_kind;
 use super::names::unread;
+use super::points;
 use super::prescribed;
 use crate::drive::Drive;
+use crate::limit::Limit;
 use crate::linkage::{JointHandle, Linkage, qualified};
 use crate::prescribed::PrescribedMotion;
 use crate::spline::Spline;
@@ -19,6 +21,7 @@ pub(super) struct Sitting {
     drives: Vec<Drive>,
     springs: Vec<Spring>,
     friction: Option<(Friction, Bearing)>,
+    limit: Option<Limit>,
     prescribed: Option<PrescribedMotion>,
 }
 
@@ -39,6 +42,7 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
     let springs = item.springs.iter().map(|spring| Spring {
         stiffness: spring.stiffness,
         damping: spring.damping,
+        rest: spring.rest.0,
     });
     let springs: Vec<Spring> = springs.collect();
     for (k, spring) in springs.iter().enumerate() {
@@ -52,6 +56,8 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
     let kind = (!unread(name, faults)).then_some(item.kind);
     let friction = item.friction.as_ref();
     let friction = friction.and_then(|friction| friction::read(name, kind, friction, faults));
+    let limit = item.limit.as_ref();
+    let limit = limit.and_then(|limit| points::limit(&["joints", name, "limit"], limit, faults));
     let prescribed = item.prescribed.as_ref();
     let prescribed = prescribed.and_then(|motion| prescribed::read(name, motion, faults));
     Sitting {
@@ -59,6 +65,7 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
         drives,
         springs,
         friction,
+        limit,
         prescribed,
     }
 }
@@ -82,6 +89,7 @@ fn numbers(name: &str, item: &JointItem, faults: &mut Faults<'_>) {
     for (key, there) in [
         ("drives", !item.drives.is_empty()),
         ("friction", item.friction.is_some()),
+        ("limit", item.limit.is_some()),
         ("prescribed", item.prescribed.is_some()),
     ] {
         if there && freedoms != 1 {
@@ -114,13 +122,16 @@ impl Sitting {
         if let Some((characteristic, bearing)) = self.friction {
             linkage.friction(joint, characteristic, bearing);
         }
+        if let Some(limit) = self.limit {
+            linkage.limit(joint, limit);
+        }
         if let Some(motion) = self.prescribed {
             linkage.prescribe(joint, motion);
         }
     }
 }
 
-fn drive(item: &DriveItem) -> Drive {
+pub(super) fn drive(item: &DriveItem) -> Drive {
     match *item {
         DriveItem::Ramp { torque, rise_time } => Drive::Ramp { torque, rise_time },
         DriveItem::Constant { torque } => Drive::Constant { torque },

@@ -20,6 +20,7 @@
 
 mod beam;
 mod clearance;
+mod contact;
 mod fault;
 mod format;
 mod friction;
@@ -27,16 +28,19 @@ mod joints;
 mod links;
 mod loads;
 mod names;
+mod points;
 mod prescribed;
 mod quantity;
 mod shape;
 mod start;
 
 pub use beam::{BeamItem, SectionItem};
-pub use clearance::{BristleItem, ClearanceItem, ContactItem};
+pub use clearance::{BristleItem, ClearanceItem};
+pub use contact::ContactItem;
 pub use fault::{Fault, SceneFileError};
 pub use format::*;
 pub use friction::FrictionItem;
+pub use points::{AxesItem, LimitItem, PointLoadItem, StrutItem};
 pub use prescribed::PrescribedItem;
 pub use quantity::Quantity;
 
@@ -95,6 +99,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
     let mut names = Names::of_beams(&file, &linkage, &faults);
     let cut = joints::add(&file, &links, &mut linkage, &mut faults);
     names.add_joints(&file, &cut, &faults);
+    points::add(&file, &links, &mut linkage, &mut faults);
     start::check(&file, &names, &mut faults);
     if faults.none()
         && let Err(error) = linkage.build()
