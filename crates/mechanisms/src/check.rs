@@ -1,8 +1,10 @@
 //! What a description must not have: names used twice, frames that are no poses, parameters out of range.
 
+use crate::clearance::Clearance;
 use crate::drive::Drive;
 use crate::error::BuildError;
 use crate::linkage::{CutItem, JointItem, Linkage};
+use crate::outline;
 use crate::spring::Spring;
 use linkdyn_friction::{BearingModel, Characteristic};
 use linkdyn_kinematics::Joint;
@@ -31,11 +33,12 @@ impl Linkage {
             }
         }
         seen.clear();
-        let with_clearance = self
-            .cuts
-            .iter()
-            .filter_map(|cut| Some((&cut.name, cut.clearance.as_ref()?)));
-        for name in with_clearance.flat_map(|(cut, clearance)| clearance.model.point_names(cut)) {
+        let joints = self.joints.iter().map(|joint| (&joint.name, &joint.clearance));
+        let cuts = self.cuts.iter().map(|cut| (&cut.name, &cut.clearance));
+        let with_clearance = joints
+            .chain(cuts)
+            .filter_map(|(name, clearance)| Some((name, clearance.as_ref()?)));
+        for name in with_clearance.flat_map(|(joint, clearance)| clearance.model.point_names(joint)) {
             if !seen.insert(name.clone()) {
                 return Err(BuildError::DuplicateName { name });
             }
@@ -94,16 +97,25 @@ impl Linkage {
 
 impl CutItem {
     fn check(&self) -> Result<(), BuildError> {
-        let Some(clearance) = &self.clearance else {
-            return Ok(());
-        };
-        let joint = || self.name.clone();
-        if !matches!(self.joint, Joint::Revolute { .. }) {
-            return Err(BuildError::ClearanceKind { joint: joint() });
-        }
-        let checked = clearance.validate();
-        checked.map_err(|source| BuildError::Clearance { joint: joint(), source })
+        check_clearance(&self.name, &self.joint, self.clearance.as_ref())
     }
+}
+
+fn check_clearance(name: &str, joint: &Joint, clearance: Option<&Clearance>) -> Result<(), BuildError> {
+    let Some(clearance) = clearance else {
+        return Ok(());
+    };
+    if !clearance.model.fits(joint) {
+        return Err(BuildError::ClearanceKind {
+            joint: name.to_owned(),
+            kind: outline::kind(joint),
+            model: clearance.model.name(),
+        });
+    }
+    clearance.validate().map_err(|source| BuildError::Clearance {
+        joint: name.to_owned(),
+        source,
+    })
 }
 
 impl JointItem {
@@ -148,7 +160,11 @@ impl JointItem {
                 expected,
             });
         }
+        check_clearance(&self.name, &self.joint, self.clearance.as_ref())?;
         if let Some(friction) = &self.friction {
+            if self.clearance.is_some() {
+                return Err(BuildError::FrictionWithClearance { joint: joint() });
+            }
             let checked = friction
                 .characteristic
                 .validate()

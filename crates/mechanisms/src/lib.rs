@@ -32,7 +32,7 @@ pub use error::{BuildError, MotionError, StartError};
 pub use events::{ContactEvent, Switching};
 pub use flexible::{Along, FlexibleLink};
 pub use forms::{ConstrainedMechanism, FormError};
-pub use linkage::{CutHandle, JointHandle, LinkHandle, Linkage, Mount};
+pub use linkage::{AnyJoint, CutHandle, JointHandle, LinkHandle, Linkage, Mount};
 pub use mechanism::{Mechanism, Start, State};
 pub use observation::Observation;
 pub use run::{MOST_ROWS, RunError, Seen, run, run_watched};

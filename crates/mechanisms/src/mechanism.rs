@@ -15,12 +15,14 @@ pub struct Mechanism {
     pub(crate) links: Vec<NamedLink>,
     pub(crate) joints: Vec<NamedJoint>,
     pub(crate) loops: Vec<NamedLoop>,
-    /// All cut joints without their clearance.
+    /// All cut joints without their clearance; those of the tree are without where the speeds of `loose` are held.
     pub(crate) centred: Vec<Closure>,
     /// Joints with clearance; they are the first of the loads with internals.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) coordinates: Vec<String>,
     pub(crate) speeds: Vec<String>,
+    /// Speeds that clearance adds to joints of the tree: zero in the ideal joint.
+    pub(crate) loose: Vec<usize>,
 }
 
 /// A link by name.
@@ -51,14 +53,13 @@ pub(crate) struct NamedLoop {
 /// A joint with clearance by name.
 #[derive(Clone, Debug)]
 pub(crate) struct Contact {
-    pub name: String,
     pub joint: Arc<ClearanceJoint>,
 }
 
 impl Contact {
     /// Names of its contact points.
     pub fn point_names(&self) -> impl Iterator<Item = String> + use<> {
-        self.joint.clearance.model.point_names(&self.name)
+        self.joint.clearance.model.point_names(&self.joint.name)
     }
 }
 
@@ -156,7 +157,7 @@ impl Mechanism {
             return None;
         }
         Some(match self.contacts.first() {
-            Some(contact) => format!("joint `{}` has clearance", contact.name),
+            Some(contact) => format!("joint `{}` has clearance", contact.joint.name),
             None => "a load has states, integrals or events of its own".into(),
         })
     }
@@ -173,7 +174,8 @@ impl Mechanism {
         self.links.iter().find(|l| l.name == link).and_then(|l| l.frame)
     }
 
-    /// Closes the loops from a guess, joints with clearance centred; see [`assembly::assemble`].
+    /// Closes the loops from a guess, joints with clearance centred; see [`assembly::assemble`]. Coordinates that clearance adds to
+    /// joints of the tree, see [`Linkage::clearance`](crate::Linkage::clearance), are held at the guess, which is zero unless named.
     ///
     /// # Errors
     /// [`StartError`] for unknown names and where the loops cannot be closed with what is held.
@@ -183,10 +185,7 @@ impl Mechanism {
         for (name, value) in &start.positions {
             q[self.index(name)?] = *value;
         }
-        let mut held = vec![false; tree.speeds()];
-        for name in &start.held {
-            held[self.speed(name)?] = true;
-        }
+        let held = self.held(&start.held)?;
         let mut v = vec![0.0; tree.speeds()];
         let mut given = held.clone();
         for (name, value) in &start.speeds {
@@ -197,6 +196,18 @@ impl Mechanism {
         let v = assembly::consistent_velocities(tree, &self.centred, &closed.q, &v, &given)?;
         let state = State { q: closed.q.clone(), v };
         Ok((state, closed))
+    }
+
+    /// A flag a speed: those of the coordinates named, and those that clearance adds.
+    pub(crate) fn held(&self, names: &[String]) -> Result<Vec<bool>, StartError> {
+        let mut held = vec![false; self.system.tree().speeds()];
+        for name in names {
+            held[self.speed(name)?] = true;
+        }
+        for &speed in &self.loose {
+            held[speed] = true;
+        }
+        Ok(held)
     }
 
     pub(crate) fn index(&self, name: &str) -> Result<usize, StartError> {

@@ -123,11 +123,17 @@ impl Simulation {
         names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
         for contact in &mechanism.contacts {
             for name in contact.point_names() {
-                names.extend(contact.joint.columns().map(|column| format!("contact.{name}.{column}")));
+                names.extend(
+                    contact
+                        .joint
+                        .columns()
+                        .iter()
+                        .map(|column| format!("contact.{name}.{column}")),
+                );
             }
         }
         names.extend(["kinetic", "potential", "elastic", "work"].map(|c| format!("energy.{c}")));
-        if !mechanism.loops.is_empty() {
+        if mechanism.system.equations() > 0 {
             names.extend(["position", "velocity"].map(|c| format!("violation.{c}")));
         }
         names
