@@ -53,8 +53,10 @@ fn skew() -> Unit<Vector3<f64>> {
 
 const SPATIAL: ClearanceModel = ClearanceModel::Spatial { length: 0.02 };
 
+type Kind = (Joint, ClearanceModel, &'static [(&'static str, f64)]);
+
 /// Every joint that may have clearance, with speeds of the joint itself.
-fn kinds() -> [(Joint, ClearanceModel, &'static [(&'static str, f64)]); 4] {
+fn kinds() -> [Kind; 4] {
     let revolute = Joint::Revolute { axis: skew() };
     [
         (revolute, ClearanceModel::Planar, &[("J", 3.0)]),
@@ -477,6 +479,11 @@ fn both_forms_have_the_same_freedoms_and_rows_as_long_as_their_columns() {
             _ => 6,
         };
         assert_eq!(freedoms, [2 + left; 2], "{joint:?}");
+        // While nothing touches, the joint holds as much as the equations that are left.
+        let held = tree.1.rows[5].reactions[1].force.norm();
+        let by_equations = cut.1.rows[5].multipliers.first().map_or(0.0, |force| force.abs());
+        assert!((held - by_equations).abs() < 1e-8, "{joint:?}: {held} {by_equations}");
+        assert_eq!(held < 1e-10, kind == "spherical", "{held}");
         for (mechanism, run) in [&tree, &cut] {
             let mut simulation = Simulation::new(mechanism);
             let mut row = Vec::new();
@@ -548,7 +555,7 @@ fn drives_and_springs_act_on_the_turn() {
 }
 
 /// Crank and slider with the joint between crank and rod in the tree, and the rod's end cut.
-fn crank_slider(clearance: Option<Clearance>) -> Mechanism {
+fn crank_slider(in_tree: Option<Clearance>, in_cut: Option<Clearance>) -> Mechanism {
     let mut linkage = Linkage::new([0.0, -9.81, 0.0]);
     let body = RigidInertia::solid_cylinder(1000.0, 0.05, 0.3, &Vector3::x());
     let [crank, rod, slider] = ["crank", "rod", "slider"].map(|name| linkage.link(name, body));
@@ -562,14 +569,17 @@ fn crank_slider(clearance: Option<Clearance>) -> Mechanism {
     );
     let axis = Vector3::x_axis();
     linkage.joint("S", Joint::Prismatic { axis }, ground, Mount::at_origin(slider));
-    linkage.cut(
+    let end = linkage.cut(
         "C",
         Joint::revolute_z(),
         Mount::at(rod, [0.3, 0.0, 0.0]),
         Mount::at_origin(slider),
     );
-    if let Some(clearance) = clearance {
+    if let Some(clearance) = in_tree {
         linkage.clearance(pin, clearance);
+    }
+    if let Some(clearance) = in_cut {
+        linkage.clearance(end, clearance);
     }
     linkage.build().expect("valid")
 }
@@ -582,9 +592,9 @@ fn a_start_is_centred_unless_it_says_otherwise() {
         held: vec!["A".into()],
         speeds: named(&[("A", 4.0)]),
     };
-    let (ideal, _) = crank_slider(None).assemble(&start).expect("closed");
+    let (ideal, _) = crank_slider(None, None).assemble(&start).expect("closed");
     for model in [ClearanceModel::Planar, SPATIAL] {
-        let mechanism = crank_slider(Some(clearance(model, CLEARANCE)));
+        let mechanism = crank_slider(Some(clearance(model, CLEARANCE)), None);
         let (loose, _) = mechanism.assemble(&start).expect("closed");
         let names: Vec<&str> = mechanism.coordinate_names().collect();
         let of = |values: &[f64], name: &str| values[names.iter().position(|&known| known == name).expect(name)];
@@ -615,4 +625,29 @@ fn a_start_is_centred_unless_it_says_otherwise() {
         start.positions.pop();
         start.speeds.pop();
     }
+}
+
+#[test]
+fn clearance_in_the_tree_and_in_a_cut_joint_go_together() {
+    let (pin, end) = (clearance(SPATIAL, 1e-3), clearance(ClearanceModel::Planar, 5e-4));
+    let mechanism = crank_slider(Some(pin), Some(end));
+    let start = Start {
+        positions: vec![("A".into(), 1.0), ("B".into(), -1.2), ("S".into(), 0.35)],
+        held: vec!["A".into()],
+        speeds: vec![("A".into(), 4.0)],
+    };
+    let (start, _) = mechanism.assemble(&start).expect("closed");
+    let run = go(&mut begin(&mechanism, &start), 0.1, 0.01);
+    assert_eq!(mechanism.contact_names().collect::<Vec<_>>(), ["B1", "B2", "C"]);
+    let sizes: Vec<f64> = mechanism.clearances().collect();
+    let (first, last) = (&run.rows[0], run.rows.last().expect("rows"));
+    for (point, size) in first.contacts.iter().zip(&sizes) {
+        assert!((point.depth + size).abs() < 1e-14, "{} {size}", point.depth);
+    }
+    for point in 0..3 {
+        assert!(run.contacts.iter().any(|(_, event)| event.point == point), "{point}");
+    }
+    let lost: f64 = last.integrals.chunks(4).map(|one| one[0] + one[1]).sum();
+    assert!(lost > 1e-4 && (last.work + lost).abs() < 1e-9, "{} {lost}", last.work);
+    assert!((last.energy_balance() - first.energy_balance()).abs() < 1e-8);
 }

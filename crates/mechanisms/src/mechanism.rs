@@ -17,7 +17,7 @@ pub struct Mechanism {
     pub(crate) loops: Vec<NamedLoop>,
     /// All cut joints without their clearance; those of the tree are without where the speeds of `loose` are held.
     pub(crate) centred: Vec<Closure>,
-    /// Joints with clearance; they are the first of the loads with internals.
+    /// Joints with clearance, those of the tree before cut ones; they are the first of the loads with internals.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) coordinates: Vec<String>,
     pub(crate) speeds: Vec<String>,
@@ -127,7 +127,7 @@ impl Mechanism {
         rubbing.map(|joint| self.speeds[joint.speed].as_str())
     }
 
-    /// Names of the contact points of joints with clearance, in the order of [`crate::Observation::contacts`].
+    /// Names of the contact points of joints with clearance, those of the tree first, in the order of [`crate::Observation::contacts`].
     pub fn contact_names(&self) -> impl Iterator<Item = String> {
         self.contacts.iter().flat_map(Contact::point_names)
     }

@@ -20,7 +20,8 @@ pub struct Observation {
     pub a: Vec<f64>,
     /// Multipliers of all loops.
     pub multipliers: Vec<f64>,
-    /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link.
+    /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link. Contacts of a joint with
+    /// clearance are loads: its reaction is what it holds besides.
     pub reactions: Vec<Reaction>,
     /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
     pub friction: Vec<f64>,
