@@ -257,7 +257,7 @@ proptest! {
             ForcePoint::OwnSurface => point.depth * point.tangent[0],
         };
         prop_assert!((torque.abs() - couple.abs()).abs() < 1e-8 * force, "{torque} {couple} of {force}");
-        prop_assert!(pair.clearance.friction.is_some() || point.tangent == [0.0; 2]);
+        prop_assert!(pair.clearance.friction.is_some() || point.tangent == [0.0; 3]);
     }
 
     #[test]
@@ -270,7 +270,7 @@ proptest! {
         simulation.observe(2.0, &y, &mut seen).expect("the state exists");
         prop_assert_eq!(&seen.q, &pair.coordinates());
         prop_assert_eq!(seen.contacts[0].impact_speed, pair.impact_speed);
-        prop_assert_eq!(seen.contacts[0].bristle, [pair.bristle, 0.0]);
+        prop_assert_eq!(seen.contacts[0].bristle, [pair.bristle, 0.0, 0.0]);
         let mut fresh = Simulation::new(&pair.mechanism());
         let again = fresh.restore(&seen);
         prop_assert_eq!(&again, &y);
@@ -300,9 +300,9 @@ fn hanging() -> impl Strategy<Value = Hanging> {
 }
 
 /// What a run shows.
-struct Run {
-    rows: Vec<Observation>,
-    contacts: Vec<(f64, ContactEvent)>,
+pub struct Run {
+    pub rows: Vec<Observation>,
+    pub contacts: Vec<(f64, ContactEvent)>,
     t: f64,
     y: Vec<f64>,
     memory: Vec<f64>,
@@ -310,15 +310,23 @@ struct Run {
 
 const TOLERANCE: f64 = 1e-10;
 
-fn integration(simulation: Simulation, (t, y): (f64, &[f64])) -> Integration<Simulation, Dop853> {
+fn integration(simulation: Simulation, start: (f64, &[f64])) -> Integration<Simulation, Dop853> {
+    integration_to(TOLERANCE, simulation, start)
+}
+
+pub fn integration_to(
+    tolerance: f64,
+    simulation: Simulation,
+    (t, y): (f64, &[f64]),
+) -> Integration<Simulation, Dop853> {
     let settings = Settings {
         max_steps: 100_000,
-        ..simulation.settings(TOLERANCE, TOLERANCE)
+        ..simulation.settings(tolerance, tolerance)
     };
     Integration::new(simulation, Dop853::default(), t, y, settings).expect("valid")
 }
 
-fn go(integration: &mut Integration<Simulation, Dop853>, until: f64, every: f64) -> Run {
+pub fn go(integration: &mut Integration<Simulation, Dop853>, until: f64, every: f64) -> Run {
     let (mut rows, mut contacts) = (Vec::new(), Vec::new());
     run_watched(integration, until, every, |seen| {
         match seen {
@@ -393,7 +401,7 @@ proptest! {
                 prop_assert!(point.depth > -1e-9 * CLEARANCE, "{} at {}", point.depth, row.t);
             } else {
                 prop_assert!(point.depth < 1e-9 * CLEARANCE, "{} at {}", point.depth, row.t);
-                prop_assert!(point.normal == 0.0 && point.tangent == [0.0; 2] && point.bristle == [0.0; 2]);
+                prop_assert!(point.normal == 0.0 && point.tangent == [0.0; 3] && point.bristle == [0.0; 3]);
             }
         }
         prop_assert!(touching > 0);

@@ -1,6 +1,6 @@
 //! What the builder must refuse of clearance and springs, and the catalogue of its scenes, by name.
 
-use crate::linkage_refusals::{Arm, arm, refusal, rod};
+use crate::linkage_refusals::{Arm, arm, bearing, characteristic, refusal, rod};
 use linkdyn_contact::{ContactLaw, Fit, ForcePoint, KelvinVoigt};
 use linkdyn_friction::{BristleStart, LuGre};
 use linkdyn_kinematics::Joint;
@@ -103,11 +103,11 @@ fn clearance_out_of_range_is_refused_by_joint_part_and_value() {
 }
 
 #[test]
-fn clearance_is_for_cut_revolute_joints_of_the_same_linkage() {
-    let clearance = || Clearance {
+fn clearance_is_for_joints_of_its_kind_and_of_the_same_linkage() {
+    let clearance = |model| Clearance {
         fit: Fit::new(0.005, 0.004).expect("a pin in a hole"),
         bearing: Side::Successor,
-        model: ClearanceModel::Planar,
+        model,
         law: ContactLaw::from(KelvinVoigt {
             stiffness: 1e6,
             damping: 0.0,
@@ -117,20 +117,71 @@ fn clearance_is_for_cut_revolute_joints_of_the_same_linkage() {
         force_point: ForcePoint::default(),
     };
     let axis = Vector3::z_axis();
-    for joint in [
-        Joint::Fixed,
-        Joint::Prismatic { axis },
-        Joint::Cylindrical { axis },
-        Joint::Spherical,
-        Joint::SphericalZyx,
+    let (planar, spatial, ball) = (
+        ("planar", ClearanceModel::Planar),
+        ("spatial", ClearanceModel::Spatial { length: 0.02 }),
+        ("spherical", ClearanceModel::Spherical),
+    );
+    for ((kind, joint), (name, model)) in [
+        (("fixed", Joint::Fixed), planar),
+        (("prismatic", Joint::Prismatic { axis }), spatial),
+        (("cylindrical", Joint::Cylindrical { axis }), planar),
+        (
+            (
+                "planar",
+                Joint::Planar {
+                    along: Vector3::x_axis(),
+                    normal: axis,
+                },
+            ),
+            ball,
+        ),
+        (("spherical", Joint::Spherical), planar),
+        (("spherical zyx", Joint::SphericalZyx), spatial),
+        (("revolute", Joint::revolute_z()), ball),
     ] {
-        let found = refusal(|arm| {
-            let (end, hole) = (Mount::at_origin(arm.lower), Mount::at_origin(Linkage::GROUND));
-            let cut = arm.linkage.cut("end", joint, end, hole);
-            arm.linkage.clearance(cut, clearance());
-        });
-        assert_eq!(found, BuildError::ClearanceKind { joint: "end".into() });
+        for cut in [false, true] {
+            let found = refusal(|arm| {
+                let (end, hole) = (Mount::at_origin(arm.lower), Mount::at_origin(Linkage::GROUND));
+                if cut {
+                    let cut = arm.linkage.cut("end", joint, end, hole);
+                    arm.linkage.clearance(cut, clearance(model));
+                } else {
+                    let third = arm.linkage.link("third", rod());
+                    let carrying = arm.linkage.joint("end", joint, end, Mount::at_origin(third));
+                    arm.linkage.clearance(carrying, clearance(model));
+                }
+            });
+            let joint = "end".to_owned();
+            assert_eq!(
+                found,
+                BuildError::ClearanceKind {
+                    joint,
+                    kind,
+                    model: name
+                }
+            );
+            assert!(
+                found.to_string().contains(&format!("is {kind}, its clearance {name}")),
+                "{found}"
+            );
+        }
     }
+    let found = refusal(|arm| {
+        arm.linkage.clearance(arm.elbow, clearance(ClearanceModel::Planar));
+        arm.linkage.friction(arm.elbow, characteristic(), bearing());
+    });
+    let joint = "elbow".to_owned();
+    assert_eq!(found, BuildError::FrictionWithClearance { joint });
+    let mut unsound = clearance(ClearanceModel::Spatial { length: -1.0 });
+    unsound.friction = None;
+    let found = refusal(|arm| {
+        arm.linkage.clearance(arm.elbow, unsound);
+    });
+    assert!(
+        matches!(&found, BuildError::Clearance { joint, .. } if joint == "elbow"),
+        "{found:?}"
+    );
     let mut other = arm();
     let foreign = other.linkage.cut(
         "end",
@@ -139,7 +190,7 @@ fn clearance_is_for_cut_revolute_joints_of_the_same_linkage() {
         Mount::at_origin(Linkage::GROUND),
     );
     let found = refusal(|arm| {
-        arm.linkage.clearance(foreign, clearance());
+        arm.linkage.clearance(foreign, clearance(ClearanceModel::Planar));
     });
     let BuildError::Foreign { what, name } = &found else {
         panic!("{found:?}");

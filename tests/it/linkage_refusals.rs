@@ -307,14 +307,14 @@ fn axes_and_mounts_that_are_not_rigid_are_refused() {
     ));
 }
 
-fn characteristic() -> Exponential {
+pub fn characteristic() -> Exponential {
     Exponential {
         reference_speed: 0.01,
         steepness: 3.0,
     }
 }
 
-fn bearing() -> JournalBearing {
+pub fn bearing() -> JournalBearing {
     let surface = |coefficient| Surface {
         diameter: 0.01,
         coefficient,

@@ -12,6 +12,7 @@ mod baumgarte;
 mod budget;
 mod clearance;
 mod clearance_contact;
+mod clearance_joints;
 mod clearance_refusals;
 mod closed_form_loops;
 mod closures;

@@ -268,7 +268,7 @@ fn the_journal_is_pushed_back_from_where_it_touches() {
     for row in touching {
         let point = &row.contacts[0];
         assert!(point.depth > 0.0 && point.impact_speed > 0.0);
-        let [y, z] = point.journal;
+        let [y, z, _] = point.journal;
         assert!((y.hypot(z) - CLEARANCE - point.depth).abs() < 1e-15);
     }
 }

@@ -74,7 +74,7 @@ impl Case {
         run_watched(&mut integration, self.until, 0.01, |mut seen| {
             tally.see(&mut seen);
             if let Seen::Row(o) = seen {
-                let [y, z] = o.contacts[0].journal;
+                let [y, z, _] = o.contacts[0].journal;
                 rows.push([o.t, o.q[4], y, z]);
                 balance.push((o.energy_balance(), o.energy.total()));
             }

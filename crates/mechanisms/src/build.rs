@@ -8,8 +8,9 @@ use crate::linkage::{JointItem, Linkage, Mount};
 use crate::mechanism::{Contact, Mechanism, NamedJoint, NamedLink, NamedLoop};
 use crate::spring::{self, JointSprings};
 use crate::strut::PlacedStrut;
-use linkdyn_dynamics::{Description, Guided, Load, ReactionLoad, System, SystemError};
+use linkdyn_dynamics::{Description, Guided, Load, ReactionLoad, RigidInertia, System, SystemError};
 use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Tree};
+use nalgebra::Vector3;
 use std::sync::Arc;
 
 impl Linkage {
@@ -23,13 +24,18 @@ impl Linkage {
         let placed = self.place()?;
 
         let (mut coordinates, mut speeds) = (Vec::new(), Vec::new());
-        let mut joints = Vec::new();
+        let (mut joints, mut loose) = (Vec::new(), Vec::new());
         let mut loads: Vec<Arc<dyn Load>> = Vec::new();
         let mut reaction_loads: Vec<(LinkId, Arc<dyn ReactionLoad>)> = Vec::new();
         let (mut springs, mut guided, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
         for (&index, &node) in placed.order.iter().zip(&placed.nodes) {
             let item = &self.joints[index];
             let (q, v) = (placed.tree.coordinate_range(node), placed.tree.speed_range(node));
+            // What clearance adds: slides before the joint's own freedoms, tilts behind the turn.
+            loose.extend(v.start - item.slides().count()..v.start);
+            if item.tilts() {
+                loose.extend(v.start + 1..v.end);
+            }
             if !item.drives.is_empty() {
                 loads.push(Arc::new(CoordinateDrives {
                     coordinate: q.start,
@@ -75,15 +81,28 @@ impl Linkage {
             loads.push(Arc::new(JointSprings(springs)));
         }
         let (mut closures, mut centred) = (Vec::new(), Vec::new());
+        for &index in &placed.order {
+            let item = &self.joints[index];
+            if let Some(clearance) = &item.clearance {
+                let ends = [&item.predecessor, &item.successor].map(|mount| placed.attachment(mount));
+                let joint = Arc::new(ClearanceJoint::new(&item.name, clearance, ends, axis_of(&item.joint)));
+                contacts.push(Contact {
+                    names: clearance.model.point_names(&item.name).collect(),
+                    load: joint.clone(),
+                });
+                loads.push(joint);
+            }
+        }
         for cut in &self.cuts {
             let (one, two) = (placed.attachment(&cut.predecessor), placed.attachment(&cut.successor));
             let ideal = match &cut.rows {
                 None => Closure::new(&placed.tree, one, two, &cut.joint),
                 Some(rows) => Closure::with_rows(&placed.tree, one, two, rows.clone()),
             };
-            match (&cut.clearance, &cut.joint) {
-                (Some(clearance), Joint::Revolute { axis }) => {
-                    let joint = Arc::new(ClearanceJoint::new(&cut.name, clearance, &ideal, **axis));
+            match &cut.clearance {
+                Some(clearance) => {
+                    let axis = axis_of(&cut.joint);
+                    let joint = Arc::new(ClearanceJoint::new(&cut.name, clearance, [one, two], axis));
                     closures.push(joint.closure(&placed.tree, &ideal));
                     contacts.push(Contact {
                         names: clearance.model.point_names(&cut.name).collect(),
@@ -91,7 +110,7 @@ impl Linkage {
                     });
                     loads.push(joint);
                 }
-                _ => closures.push(ideal.clone()),
+                None => closures.push(ideal.clone()),
             }
             centred.push(ideal);
         }
@@ -112,8 +131,10 @@ impl Linkage {
             components: closure.component_names(),
         });
         let loops = loops.collect();
-        let inertias = placed.order.iter().map(|&index| {
-            let item = &self.joints[index];
+        let inertias = placed.carriers.iter().map(|carrier| {
+            let Some(item) = carrier.map(|index| &self.joints[index]) else {
+                return RigidInertia::massless();
+            };
             let (_, inertia) = &self.links[item.successor.link.0.unwrap_or_default()];
             inertia.moved(&item.successor_frame().inverse())
         });
@@ -142,6 +163,7 @@ impl Linkage {
             contacts,
             coordinates,
             speeds,
+            loose,
         })
     }
 
@@ -151,6 +173,7 @@ impl Linkage {
             tree: Tree::new(),
             order: Vec::new(),
             nodes: Vec::new(),
+            carriers: Vec::new(),
             frames: vec![None; self.links.len()],
         };
         for (k, joint) in self.joints.iter().enumerate() {
@@ -172,18 +195,16 @@ impl Linkage {
                 reached && !placed.order.contains(k)
             });
             let Some((k, item)) = next else { break };
-            let base = placed.attachment(&Mount {
+            let mut base = placed.attachment(&Mount {
                 link: item.predecessor.link,
                 pose: item.predecessor_frame(),
             });
-            let joint = item.aligned();
-            let node = placed
-                .tree
-                .attach(base.link, base.pose, joint)
-                .map_err(|source| BuildError::Joint {
-                    joint: item.name.clone(),
-                    source,
-                })?;
+            for joint in item.slides() {
+                base = placed.attach(item, base, joint)?;
+                placed.carriers.push(None);
+            }
+            let node = placed.attach(item, base, item.carrying())?.link;
+            placed.carriers.push(Some(k));
             let frame = Attachment {
                 link: node,
                 pose: item.successor_frame().inverse(),
@@ -212,7 +233,7 @@ impl Linkage {
     fn name_link(&self, error: SystemError, placed: &Placed) -> BuildError {
         match error {
             SystemError::Inertia { link, source } => BuildError::Inertia {
-                link: self.link_name(self.joints[placed.order[link]].successor.link),
+                link: placed.carriers[link].map_or_else(String::new, |k| self.link_name(self.joints[k].successor.link)),
                 source,
             },
             other => BuildError::System(other),
@@ -227,11 +248,32 @@ struct Placed {
     order: Vec<usize>,
     /// Their nodes.
     nodes: Vec<LinkId>,
+    /// For each link of the tree the joint that carries it; none for what stands between slides.
+    carriers: Vec<Option<usize>>,
     /// Frames of the links on the tree's nodes.
     frames: Vec<Option<Attachment>>,
 }
 
+/// Axis of a joint with clearance in its frame; any one for a ball.
+fn axis_of(joint: &Joint) -> Vector3<f64> {
+    match joint {
+        Joint::Revolute { axis } => **axis,
+        _ => Vector3::z(),
+    }
+}
+
 impl Placed {
+    /// Hangs a link on `base`; its frame.
+    fn attach(&mut self, item: &JointItem, base: Attachment, joint: Joint) -> Result<Attachment, BuildError> {
+        let attached = self.tree.attach(base.link, base.pose, joint);
+        let link = attached.map_err(|source| BuildError::Joint {
+            joint: item.name.clone(),
+            source,
+        })?;
+        let pose = Pose::identity();
+        Ok(Attachment { link, pose })
+    }
+
     fn attachment(&self, mount: &Mount) -> Attachment {
         let ground = Attachment {
             link: LinkId::GROUND,

@@ -31,9 +31,11 @@ impl Linkage {
         rubbing.map(|friction| &mut friction.characteristic)
     }
 
-    /// Clearances of all cut joints that have one.
+    /// Clearances of all joints that have one.
     pub fn clearances_mut(&mut self) -> impl Iterator<Item = &mut Clearance> {
-        self.cuts.iter_mut().filter_map(|item| item.clearance.as_mut())
+        let joints = self.joints.iter_mut().map(|item| &mut item.clearance);
+        let cuts = self.cuts.iter_mut().map(|item| &mut item.clearance);
+        joints.chain(cuts).filter_map(Option::as_mut)
     }
 
     /// Takes all drives and resistances away, those on points and links too.

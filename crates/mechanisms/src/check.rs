@@ -1,8 +1,10 @@
 //! What a description must not have: names used twice, frames that are no poses, parameters out of range.
 
+use crate::clearance::Clearance;
 use crate::drive::Drive;
 use crate::error::BuildError;
 use crate::linkage::{CutItem, JointItem, Linkage, Mount};
+use crate::outline;
 use crate::point_load::Acts;
 use crate::prescribed::PrescribedMotion;
 use crate::spring::Spring;
@@ -33,13 +35,14 @@ impl Linkage {
             }
         }
         seen.clear();
-        let with_clearance = self
-            .cuts
-            .iter()
-            .filter_map(|cut| Some((&cut.name, cut.clearance.as_ref()?)));
+        let joints = self.joints.iter().map(|joint| (&joint.name, &joint.clearance));
+        let cuts = self.cuts.iter().map(|cut| (&cut.name, &cut.clearance));
+        let with_clearance = joints
+            .chain(cuts)
+            .filter_map(|(name, clearance)| Some((name, clearance.as_ref()?)));
         let with_limit = self.joints.iter().filter_map(|j| Some((&j.name, j.limit.as_ref()?)));
         let in_limits = with_limit.flat_map(|(joint, limit)| limit.point_names(joint));
-        let in_clearances = with_clearance.flat_map(|(cut, clearance)| clearance.model.point_names(cut));
+        let in_clearances = with_clearance.flat_map(|(joint, clearance)| clearance.model.point_names(joint));
         for name in in_limits.chain(in_clearances) {
             if !seen.insert(name.clone()) {
                 return Err(BuildError::DuplicateName { name });
@@ -160,16 +163,25 @@ impl CutItem {
             let joint = self.name.clone();
             return Err(BuildError::Row { joint, row });
         }
-        let Some(clearance) = &self.clearance else {
-            return Ok(());
-        };
-        let joint = || self.name.clone();
-        if !matches!(self.joint, Joint::Revolute { .. }) {
-            return Err(BuildError::ClearanceKind { joint: joint() });
-        }
-        let checked = clearance.validate();
-        checked.map_err(|source| BuildError::Clearance { joint: joint(), source })
+        check_clearance(&self.name, &self.joint, self.clearance.as_ref())
     }
+}
+
+fn check_clearance(name: &str, joint: &Joint, clearance: Option<&Clearance>) -> Result<(), BuildError> {
+    let Some(clearance) = clearance else {
+        return Ok(());
+    };
+    if !clearance.model.fits(joint) {
+        return Err(BuildError::ClearanceKind {
+            joint: name.to_owned(),
+            kind: outline::kind(joint),
+            model: clearance.model.name(),
+        });
+    }
+    clearance.validate().map_err(|source| BuildError::Clearance {
+        joint: name.to_owned(),
+        source,
+    })
 }
 
 impl JointItem {
@@ -221,7 +233,11 @@ impl JointItem {
             let checked = limit.validate();
             checked.map_err(|source| BuildError::Limit { joint: joint(), source })?;
         }
+        check_clearance(&self.name, &self.joint, self.clearance.as_ref())?;
         if let Some(friction) = &self.friction {
+            if self.clearance.is_some() {
+                return Err(BuildError::FrictionWithClearance { joint: joint() });
+            }
             let checked = friction
                 .characteristic
                 .validate()

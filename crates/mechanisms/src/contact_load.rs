@@ -17,8 +17,8 @@ pub(crate) trait ContactLoad: Load {
     fn observe(&self, motion: &Motion<'_>, point: usize) -> ContactPoint;
 
     /// Columns of a contact point in result files, as [`ContactPoint`] writes them.
-    fn columns(&self) -> Vec<&'static str> {
-        ["depth", "rate", "normal", "tangent", "bristle", "impact_speed"].to_vec()
+    fn columns(&self) -> &'static [&'static str] {
+        ContactPoint::columns(0)
     }
 
     /// Friction at its points, if there is any.

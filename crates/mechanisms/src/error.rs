@@ -96,16 +96,32 @@ pub enum BuildError {
         /// Index of the equation.
         row: usize,
     },
-    /// Clearance is for revolute joints.
-    #[error("cut joint `{joint}` has clearance, but is no revolute joint")]
+    /// The model of a clearance is for joints of another kind.
+    #[error(
+        "joint `{joint}` is {kind}, its clearance {model}: planar and spatial clearance are for revolute joints, spherical clearance \
+         is for spherical ones"
+    )]
     ClearanceKind {
-        /// The cut joint.
+        /// The joint.
+        joint: String,
+        /// Its kind.
+        kind: &'static str,
+        /// The model of its clearance.
+        model: &'static str,
+    },
+    /// A joint with clearance has friction of a bearing.
+    #[error(
+        "joint `{joint}` has clearance, and friction of a bearing, which needs the reaction of an ideal joint; give the clearance a \
+         bristle instead"
+    )]
+    FrictionWithClearance {
+        /// The joint.
         joint: String,
     },
     /// A parameter of a clearance is out of range.
     #[error("clearance of joint `{joint}`: {source}")]
     Clearance {
-        /// The cut joint.
+        /// The joint.
         joint: String,
         /// What is wrong.
         source: ClearanceError,

@@ -39,7 +39,7 @@ pub use events::{ContactEvent, Switching};
 pub use flexible::{Along, FlexibleLink};
 pub use forms::{ConstrainedMechanism, FormError};
 pub use limit::{Limit, LimitError};
-pub use linkage::{CutHandle, JointHandle, LinkHandle, Linkage, Mount};
+pub use linkage::{AnyJoint, CutHandle, JointHandle, LinkHandle, Linkage, Mount};
 pub use mechanism::{Mechanism, Start, State};
 pub use observation::Observation;
 pub use point_load::{Axes, PointLoad};

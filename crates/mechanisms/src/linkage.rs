@@ -27,6 +27,27 @@ pub struct JointHandle(pub(crate) usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CutHandle(pub(crate) usize);
 
+/// A joint of either kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AnyJoint {
+    /// One of the tree.
+    Carrying(JointHandle),
+    /// One that is cut.
+    Cut(CutHandle),
+}
+
+impl From<JointHandle> for AnyJoint {
+    fn from(joint: JointHandle) -> Self {
+        Self::Carrying(joint)
+    }
+}
+
+impl From<CutHandle> for AnyJoint {
+    fn from(cut: CutHandle) -> Self {
+        Self::Cut(cut)
+    }
+}
+
 /// A frame on a link, where a joint sits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -99,6 +120,7 @@ pub(crate) struct JointItem {
     pub(crate) friction: Option<JointFriction>,
     pub(crate) prescribed: Option<PrescribedMotion>,
     pub(crate) limit: Option<Limit>,
+    pub(crate) clearance: Option<Clearance>,
 }
 
 #[derive(Clone, Debug)]
@@ -154,6 +176,7 @@ impl Linkage {
             friction: None,
             prescribed: None,
             limit: None,
+            clearance: None,
         });
         JointHandle(self.joints.len() - 1)
     }
@@ -195,11 +218,23 @@ impl Linkage {
         CutHandle(self.cuts.len() - 1)
     }
 
-    /// Gives a cut revolute joint clearance: some of its equations go, a contact comes. A start is still assembled with the journal
-    /// in the middle of its bearing.
-    pub fn clearance(&mut self, cut: CutHandle, clearance: Clearance) -> &mut Self {
-        match self.cuts.get_mut(cut.0) {
-            Some(item) => item.clearance = Some(clearance),
+    /// Gives a revolute or spherical joint clearance, and a contact. A cut joint loses equations. A joint of the tree gets coordinates
+    /// before its own: `JOINT.x` and `JOINT.y`, for a ball `JOINT.z` too, the place of the successor's frame in that of the
+    /// predecessor \[m\] (turned so that z is the axis of a revolute joint). Its own are called as ever, but:
+    ///
+    /// * with spatial clearance the tilts `JOINT.theta` and `JOINT.phi` stand behind the turn, which is one about the predecessor's
+    ///   axis (turns about z, y, x; drives and springs act on the first);
+    /// * of a ball joint with a quaternion they are `JOINT.qw`, `JOINT.qx`, `JOINT.qy`, `JOINT.qz`, unless named.
+    ///
+    /// A start is assembled with the journal in the middle of its bearing; coordinates that clearance adds to the tree may be given
+    /// other values there, and are held.
+    pub fn clearance(&mut self, joint: impl Into<AnyJoint>, clearance: Clearance) -> &mut Self {
+        let place = match joint.into() {
+            AnyJoint::Carrying(joint) => self.joints.get_mut(joint.0).map(|item| &mut item.clearance),
+            AnyJoint::Cut(cut) => self.cuts.get_mut(cut.0).map(|item| &mut item.clearance),
+        };
+        match place {
+            Some(place) => *place = Some(clearance),
             None => self.foreign = true,
         }
         self
@@ -307,11 +342,13 @@ pub(crate) fn qualified(joint: &str, local: &[&str]) -> Vec<String> {
 }
 
 impl JointItem {
-    /// Names of its coordinates.
+    /// Names of its coordinates, those that clearance adds included.
     pub(crate) fn coordinates(&self) -> Vec<String> {
-        self.coordinate_names
-            .clone()
-            .unwrap_or_else(|| qualified(&self.name, self.joint.coordinate_names()))
+        let own = match &self.coordinate_names {
+            Some(names) => names.clone(),
+            None => qualified(&self.name, self.own_names()),
+        };
+        self.with_offsets(own)
     }
 
     /// Speeds have the names of their coordinates wherever they are their rates.
@@ -319,7 +356,7 @@ impl JointItem {
         if self.joint.coordinates() == self.joint.speeds() {
             self.coordinates()
         } else {
-            qualified(&self.name, self.joint.speed_names())
+            self.with_offsets(qualified(&self.name, self.joint.speed_names()))
         }
     }
 
@@ -337,9 +374,11 @@ impl JointItem {
         }
     }
 
-    pub(crate) fn aligned(&self) -> Joint {
+    /// The joint as it stands in the tree.
+    pub(crate) fn carrying(&self) -> Joint {
         let z: Unit<Vector3<f64>> = Vector3::z_axis();
         match self.joint {
+            Joint::Revolute { .. } if self.tilts() => Joint::SphericalZyx,
             Joint::Revolute { .. } => Joint::Revolute { axis: z },
             Joint::Prismatic { .. } => Joint::Prismatic { axis: z },
             other => other,

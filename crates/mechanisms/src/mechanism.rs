@@ -15,12 +15,14 @@ pub struct Mechanism {
     pub(crate) links: Vec<NamedLink>,
     pub(crate) joints: Vec<NamedJoint>,
     pub(crate) loops: Vec<NamedLoop>,
-    /// All cut joints without their clearance.
+    /// All cut joints without their clearance; those of the tree are without where the speeds of `loose` are held.
     pub(crate) centred: Vec<Closure>,
-    /// Joints with limits or clearance; they are the first of the loads with internals.
+    /// Joints with limits, then with clearance, those of the tree before cut ones; they are the first of the loads with internals.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) coordinates: Vec<String>,
     pub(crate) speeds: Vec<String>,
+    /// Speeds that clearance adds to joints of the tree: zero in the ideal joint.
+    pub(crate) loose: Vec<usize>,
 }
 
 /// A link by name.
@@ -127,7 +129,8 @@ impl Mechanism {
         rubbing.map(|joint| self.speeds[joint.speed].as_str())
     }
 
-    /// Names of the contact points of joints with limits or clearance, in the order of [`crate::Observation::contacts`].
+    /// Names of the contact points of joints with limits, then of those with clearance, those of the tree first, in the order of
+    /// [`crate::Observation::contacts`].
     pub fn contact_names(&self) -> impl Iterator<Item = String> {
         self.contacts.iter().flat_map(|contact| contact.names.iter().cloned())
     }
@@ -176,7 +179,8 @@ impl Mechanism {
     }
 
     /// Closes the loops from a guess, joints with clearance centred and prescribed coordinates where they are at t = 0; see
-    /// [`assembly::assemble`].
+    /// [`assembly::assemble`]. Coordinates that clearance adds to joints of the tree, see
+    /// [`Linkage::clearance`](crate::Linkage::clearance), are held at the guess, which is zero unless named.
     ///
     /// # Errors
     /// [`StartError`] for unknown names and where the loops cannot be closed with what is held.
@@ -186,10 +190,7 @@ impl Mechanism {
         for (name, value) in &start.positions {
             q[self.index(name)?] = *value;
         }
-        let mut held = vec![false; tree.speeds()];
-        for name in &start.held {
-            held[self.speed(name)?] = true;
-        }
+        let mut held = self.held(&start.held)?;
         for guided in self.system.guided().iter().filter(|guided| !guided.speed_only) {
             (q[guided.coordinate], held[guided.speed]) = (guided.guide.at(0.0)[0], true);
         }
@@ -231,6 +232,18 @@ impl Mechanism {
             }
         }
         Ok(())
+    }
+
+    /// A flag a speed: those of the coordinates named, and those that clearance adds.
+    pub(crate) fn held(&self, names: &[String]) -> Result<Vec<bool>, StartError> {
+        let mut held = vec![false; self.system.tree().speeds()];
+        for name in names {
+            held[self.speed(name)?] = true;
+        }
+        for &speed in &self.loose {
+            held[speed] = true;
+        }
+        Ok(held)
     }
 
     pub(crate) fn index(&self, name: &str) -> Result<usize, StartError> {

@@ -20,7 +20,8 @@ pub struct Observation {
     pub a: Vec<f64>,
     /// Multipliers of all loops, then of the prescribed motions.
     pub multipliers: Vec<f64>,
-    /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link.
+    /// Reactions on the successor of each joint at the joint's origin, in axes of the successor link. Contacts of a joint with
+    /// clearance are loads: its reaction is what it holds besides.
     pub reactions: Vec<Reaction>,
     /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
     pub friction: Vec<f64>,
@@ -124,7 +125,7 @@ impl Simulation {
         names.extend(mechanism.friction_names().map(|name| format!("friction.{name}")));
         for contact in &mechanism.contacts {
             for name in &contact.names {
-                let columns = contact.load.columns().into_iter();
+                let columns = contact.load.columns().iter();
                 names.extend(columns.map(|column| format!("contact.{name}.{column}")));
             }
         }

@@ -1,5 +1,6 @@
 //! The topology of a linkage as text.
 
+use crate::clearance::Clearance;
 use crate::linkage::{LinkHandle, Linkage};
 use linkdyn_kinematics::Joint;
 use std::fmt::Write;
@@ -17,7 +18,8 @@ impl Linkage {
             if let Some(k) = next {
                 drawn[k] = true;
                 let item = &self.joints[k];
-                let (indent, kind, carried) = (2 * depth, kind(&item.joint), self.link_name(item.successor.link));
+                let kind = described(&item.joint, item.clearance.as_ref());
+                let (indent, carried) = (2 * depth, self.link_name(item.successor.link));
                 // Writing to a string cannot fail.
                 let _ = writeln!(text, "{:indent$}{} ({kind}) - {carried}", "", item.name);
                 open.push((depth, link));
@@ -27,8 +29,8 @@ impl Linkage {
         for cut in &self.cuts {
             let (one, two) = (self.link_name(cut.predecessor.link), self.link_name(cut.successor.link));
             let kind = match cut.rows {
-                None => kind(&cut.joint),
-                Some(_) => "its own equations",
+                None => described(&cut.joint, cut.clearance.as_ref()),
+                Some(_) => "its own equations".into(),
             };
             let _ = writeln!(text, "cut: {one} - {} ({kind}) - {two}", cut.name);
         }
@@ -36,7 +38,16 @@ impl Linkage {
     }
 }
 
-fn kind(joint: &Joint) -> &'static str {
+/// Kind of a joint and of its clearance.
+fn described(joint: &Joint, clearance: Option<&Clearance>) -> String {
+    match clearance {
+        None => kind(joint).to_owned(),
+        Some(clearance) => format!("{}, {} clearance", kind(joint), clearance.model.name()),
+    }
+}
+
+/// Kind of a joint, for messages.
+pub(crate) fn kind(joint: &Joint) -> &'static str {
     match joint {
         Joint::Fixed => "fixed",
         Joint::Revolute { .. } => "revolute",

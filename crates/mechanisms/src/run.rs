@@ -203,7 +203,7 @@ fn explain(simulation: &mut Simulation, time: f64, y: &[f64], cause: Integration
         let Some(model) = model.filter(|_| point.normal > 0.0) else {
             continue;
         };
-        let length = |[a, b]: [f64; 2]| f64::hypot(a, b);
+        let length = |[x, y, z]: [f64; 3]| f64::hypot(x, y).hypot(z);
         let slip = length(point.slip);
         let coefficient = length(point.tangent) / point.normal;
         let (steady, passive) = (model.steady_coefficient(slip), model.largest_passive_slip());

@@ -30,7 +30,8 @@ impl Point {
             forces.extend(reaction.force.iter().chain(reaction.torque.iter()));
         }
         for contact in &o.contacts {
-            forces.extend([contact.normal, contact.tangent[0], contact.tangent[1]]);
+            forces.push(contact.normal);
+            forces.extend(contact.tangent);
         }
         Self {
             t: o.t,

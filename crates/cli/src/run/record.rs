@@ -137,7 +137,7 @@ impl Record {
             if curve.normal.points.len() == count {
                 curve.journal.pop();
             }
-            curve.journal.push(point.journal.into());
+            curve.journal.push((point.journal[0], point.journal[1]));
         }
     }
 

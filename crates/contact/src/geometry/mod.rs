@@ -1,5 +1,6 @@
-//! Journal and bearing: where they touch and how they move against each other. Pure functions in any common frame.
+//! Journal and bearing, ball and socket: where they touch and how they move against each other. Pure functions in any common frame.
 
+mod ball;
 mod edges;
 mod fit;
 mod touch;

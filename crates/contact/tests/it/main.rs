@@ -1,5 +1,6 @@
 //! Tests of the public behaviour, one module per subject. Names say which mistake they guard against.
 
+mod ball;
 mod edges;
 mod extremes;
 mod fixtures;

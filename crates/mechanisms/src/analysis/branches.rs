@@ -80,10 +80,7 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
     for (name, value) in &start.positions {
         base[mechanism.index(name)?] = *value;
     }
-    let mut held = vec![false; tree.speeds()];
-    for name in &start.held {
-        held[mechanism.speed(name)?] = true;
-    }
+    let held = mechanism.held(&start.held)?;
     let size = size(mechanism);
     let reach = search.reach.unwrap_or(size);
     let free: Vec<usize> = (0..tree.speeds()).filter(|&speed| !held[speed]).collect();
@@ -128,7 +125,7 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
     }
     if !found.is_empty() && !isolated {
         let names = |wanted: bool| {
-            let speeds = (0..held.len()).filter(|&speed| held[speed] == wanted);
+            let speeds = (0..held.len()).filter(|speed| held[*speed] == wanted && !mechanism.loose.contains(speed));
             speeds
                 .map(|speed| format!("`{}`", mechanism.speeds[speed]))
                 .collect::<Vec<_>>()

@@ -4,36 +4,35 @@ use super::{Clearance, ClearanceModel, ContactIntegrals, ContactPoint, Side};
 use crate::contact_load::{ContactLoad, kept};
 use linkdyn_contact::{Centre, NormalForce, NormalModel, Skewed, Touch};
 use linkdyn_dynamics::{Internals, Load, Loads, Motion};
-use linkdyn_friction::{Bristle, BristleModel};
+use linkdyn_friction::Bristle;
 use linkdyn_kinematics::{Attachment, Closure, Positions, Row, Tree, Velocities, Wrench};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A joint with clearance as a load.
 #[derive(Debug)]
 pub(crate) struct ClearanceJoint {
-    /// Name of the cut joint.
+    /// Name of the joint.
     pub name: String,
     pub clearance: Clearance,
     /// Frame with the hole, and frame with the pin.
     bearing: Attachment,
     journal: Attachment,
-    /// The joint's axis in both frames.
+    /// The joint's axis in both frames; any one for a ball.
     axis: Vector3<f64>,
     /// Two directions normal to it, in the frame with the hole: of its axes the first that is not close to the joint's, made
-    /// normal to that, and the one that makes them right-handed.
-    plane: [Vector3<f64>; 2],
+    /// normal to that, and the one that makes them right-handed; then the axis itself.
+    seen_along: [Vector3<f64>; 3],
 }
 
 /// A journal in its bearing, in motion.
-struct Pair {
-    bearing: Centre,
-    journal: Centre,
+pub(super) struct Pair {
+    pub bearing: Centre,
+    pub journal: Centre,
 }
 
 impl ClearanceJoint {
-    /// In place of the ideal closure of a revolute joint along `axis` of both frames.
-    pub fn new(name: &str, clearance: &Clearance, ideal: &Closure, axis: Vector3<f64>) -> Self {
-        let (one, two) = (*ideal.predecessor(), *ideal.successor());
+    /// Between the frames of a joint on its predecessor and its successor, along `axis` of both.
+    pub fn new(name: &str, clearance: &Clearance, [one, two]: [Attachment; 2], axis: Vector3<f64>) -> Self {
         let (bearing, journal) = match clearance.bearing {
             Side::Predecessor => (one, two),
             Side::Successor => (two, one),
@@ -46,26 +45,22 @@ impl ClearanceJoint {
             bearing,
             journal,
             axis,
-            plane: [first, axis.cross(&first)],
+            seen_along: [first, axis.cross(&first), axis],
         }
     }
 
-    /// The equations that clearance leaves.
+    /// The equations of a cut joint that clearance leaves.
     pub fn closure(&self, tree: &Tree, ideal: &Closure) -> Closure {
-        let mut rows = vec![Row::Along { axis: self.axis }];
-        if self.clearance.model == ClearanceModel::Planar {
-            rows.extend(ideal.rows().iter().filter(|row| matches!(row, Row::Angle { .. })));
-        }
+        let along = Row::Along { axis: self.axis };
+        let rows = match self.clearance.model {
+            ClearanceModel::Planar => {
+                let angles = ideal.rows().iter().filter(|row| matches!(row, Row::Angle { .. }));
+                std::iter::once(along).chain(angles.copied()).collect()
+            }
+            ClearanceModel::Spatial { .. } => vec![along],
+            ClearanceModel::Spherical => Vec::new(),
+        };
         Closure::with_rows(tree, *ideal.predecessor(), *ideal.successor(), rows)
-    }
-
-    /// Bristles at each point: one along the tangent in the plane, two in space.
-    fn bristles(&self) -> usize {
-        match (&self.clearance.friction, self.clearance.model) {
-            (None, _) => 0,
-            (Some(_), ClearanceModel::Planar) => 1,
-            (Some(_), ClearanceModel::Spatial { .. }) => 2,
-        }
     }
 
     /// Gap at each point: clearance less eccentricity \[m\]; not a number where the journal is too far inclined.
@@ -73,6 +68,7 @@ impl ClearanceJoint {
         let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
         match self.clearance.model {
             ClearanceModel::Planar => [fit.gap(bearing, journal); 2],
+            ClearanceModel::Spherical => [fit.ball_gap(bearing, journal); 2],
             ClearanceModel::Spatial { length } => fit.edge_gaps(length, bearing, journal).unwrap_or([f64::NAN; 2]),
         }
     }
@@ -81,6 +77,7 @@ impl ClearanceJoint {
         let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
         match self.clearance.model {
             ClearanceModel::Planar => [fit.gap_rate(bearing, journal); 2],
+            ClearanceModel::Spherical => [fit.ball_gap_rate(bearing, journal); 2],
             ClearanceModel::Spatial { length } => fit.edge_gap_rates(length, bearing, journal).unwrap_or([f64::NAN; 2]),
         }
     }
@@ -89,6 +86,7 @@ impl ClearanceJoint {
         let (fit, Pair { bearing, journal }) = (&self.clearance.fit, pair);
         match self.clearance.model {
             ClearanceModel::Planar => Ok([fit.planar(bearing, journal), None]),
+            ClearanceModel::Spherical => Ok([fit.ball(bearing, journal), None]),
             ClearanceModel::Spatial { length } => fit.edges(length, bearing, journal),
         }
     }
@@ -110,35 +108,19 @@ impl ClearanceJoint {
     fn normal(&self, touch: &Touch, impact_speed: f64) -> NormalForce {
         let force = self.clearance.law.at(touch.depth, touch.rate, impact_speed);
         match self.clearance.model {
-            ClearanceModel::Planar => force,
+            ClearanceModel::Planar | ClearanceModel::Spherical => force,
             ClearanceModel::Spatial { .. } => force.scaled(0.5),
         }
     }
 
-    /// Coefficients of friction along tangent and axis, and rates of the bristles.
-    fn friction(&self, touch: &Touch, bristles: &[f64]) -> ([f64; 2], [f64; 2]) {
-        match (&self.clearance.friction, bristles) {
-            (Some(model), &[z]) => {
-                let at = model.at(touch.slip, z);
-                ([at.coefficient.value, 0.0], [at.rate.value, 0.0])
-            }
-            (Some(model), &[z1, z2]) => {
-                let at = model.at_planar([touch.slip, touch.axial_slip], [z1, z2]);
-                (at.coefficient, at.rate)
-            }
-            _ => ([0.0; 2], [0.0; 2]),
-        }
-    }
-
-    fn journal_in_bearing(&self, pair: &Pair, motion: &Motion<'_>) -> [f64; 2] {
-        let frame = motion.positions.pose(self.bearing.link) * self.bearing.pose;
-        let e = frame.rotation.tr_mul(&(pair.journal.point - pair.bearing.point));
-        self.plane.map(|direction| direction.dot(&e))
+    /// Axes of the bearing's frame.
+    fn axes(&self, positions: &Positions) -> Matrix3<f64> {
+        positions.nodes()[self.bearing.link.node()].rotation * self.bearing.pose.rotation
     }
 
     /// Bristles and impact speed of a point.
     fn kept<'a>(&self, motion: &Motion<'a>, point: usize) -> (&'a [f64], f64) {
-        let bristles = self.bristles();
+        let bristles = self.clearance.directions();
         let states = &motion.internal.states[point * bristles..(point + 1) * bristles];
         (states, kept::impact_speed(motion.internal.memory, point))
     }
@@ -167,34 +149,32 @@ impl ContactLoad for ClearanceJoint {
     }
 
     fn observe(&self, motion: &Motion<'_>, point: usize) -> ContactPoint {
-        let pair = self.pair(motion);
+        let (pair, axes) = (self.pair(motion), self.axes(motion.positions));
         let (bristles, impact_speed) = self.kept(motion, point);
+        let eccentricity = axes.tr_mul(&(pair.journal.point - pair.bearing.point));
         let mut seen = ContactPoint {
             depth: -self.gaps(&pair)[point],
             rate: -self.gap_rates(&pair)[point],
             impact_speed,
-            journal: self.journal_in_bearing(&pair, motion),
-            axial: self.bristles() == 2,
+            journal: self.seen_along.map(|direction| direction.dot(&eccentricity)),
+            directions: self.clearance.directions(),
             ..ContactPoint::default()
         };
         seen.bristle[..bristles.len()].copy_from_slice(bristles);
         if impact_speed > 0.0
             && let Some(touch) = self.touches_or_none(&pair)[point]
         {
-            let (coefficients, _) = self.friction(&touch, bristles);
+            let rubbing = self.clearance.rubbing(&touch, &pair, &axes, bristles);
             seen.normal = self.normal(&touch, impact_speed).value;
-            seen.tangent = coefficients.map(|mu| mu * seen.normal);
-            seen.slip = [touch.slip, touch.axial_slip];
+            let directions = |parts| self.clearance.in_directions(&touch, &axes, parts);
+            seen.tangent = directions(rubbing.coefficients.map(|mu| mu * seen.normal));
+            seen.slip = directions([touch.slip, touch.axial_slip]);
         }
         seen
     }
 
-    fn columns(&self) -> Vec<&'static str> {
-        let mut columns = ["depth", "rate", "normal", "tangent", "bristle", "impact_speed"].to_vec();
-        if self.bristles() == 2 {
-            columns.extend(["tangent_axial", "bristle_axial"]);
-        }
-        columns
+    fn columns(&self) -> &'static [&'static str] {
+        ContactPoint::columns(self.clearance.directions())
     }
 
     fn bristle(&self) -> Option<&Bristle> {
@@ -210,7 +190,7 @@ impl Load for ClearanceJoint {
     fn internals(&self) -> Internals {
         let points = self.points();
         Internals {
-            states: points * self.bristles(),
+            states: points * self.clearance.directions(),
             integrals: points * ContactIntegrals::COUNT,
             memory: points * kept::COUNT,
             roots: points,
@@ -220,7 +200,9 @@ impl Load for ClearanceJoint {
     fn apply(&self, motion: &Motion<'_>, loads: &mut Loads<'_>) {
         let points = self.points();
         let free = (0..points).all(|point| self.kept(motion, point).1 == 0.0);
-        if free && self.clearance.model == ClearanceModel::Planar {
+        // A journal across its bearing is refused even while it touches nothing.
+        let may_tilt = matches!(self.clearance.model, ClearanceModel::Spatial { .. });
+        if free && !may_tilt {
             return;
         }
         let pair = self.pair(motion);
@@ -231,19 +213,19 @@ impl Load for ClearanceJoint {
         if free {
             return;
         }
-        let bristles = self.bristles();
+        let (bristles, axes) = (self.clearance.directions(), self.axes(motion.positions));
         for (point, touch) in touches.iter().enumerate().take(points) {
             let (z, impact_speed) = self.kept(motion, point);
             let (Some(touch), true) = (touch, impact_speed > 0.0) else {
                 continue;
             };
             let normal = self.normal(touch, impact_speed);
-            let (coefficients, rates) = self.friction(touch, z);
-            loads.state_rates[point * bristles..(point + 1) * bristles].copy_from_slice(&rates[..bristles]);
+            let rubbing = self.clearance.rubbing(touch, &pair, &axes, z);
+            loads.state_rates[point * bristles..(point + 1) * bristles].copy_from_slice(&rubbing.rates[..bristles]);
             if normal.value == 0.0 && normal.elastic == 0.0 {
                 continue;
             }
-            let friction = coefficients.map(|mu| mu * normal.value);
+            let friction = rubbing.coefficients.map(|mu| mu * normal.value);
             let force = touch.force(normal.value, friction, self.clearance.force_point);
             let origin = |at: &Attachment| motion.positions.nodes()[at.link.node()].origin;
             let on_bearing = Wrench {
@@ -295,7 +277,8 @@ impl Load for ClearanceJoint {
     fn at_event(&self, motion: &Motion<'_>, fired: &[bool], states: &mut [f64], memory: &mut [f64]) {
         let pair = self.pair(motion);
         let rates = self.gap_rates(&pair);
-        let (touches, bristles) = (self.touches_or_none(&pair), self.bristles());
+        let (touches, bristles) = (self.touches_or_none(&pair), self.clearance.directions());
+        let axes = self.axes(motion.positions);
         for point in (0..self.points()).filter(|&point| fired[point]) {
             let z = &mut states[point * bristles..(point + 1) * bristles];
             z.fill(0.0);
@@ -304,12 +287,7 @@ impl Load for ClearanceJoint {
                 continue;
             }
             if let (Some(model), Some(touch)) = (&self.clearance.friction, touches[point]) {
-                let start = self.clearance.bristle_start;
-                let slip = [touch.slip, touch.axial_slip];
-                match z {
-                    [z] => *z = start.deflection(model.model(), touch.slip),
-                    z => z.copy_from_slice(&start.planar_deflection(model.model(), slip)),
-                }
+                self.clearance.begin_rubbing(model, &touch, &axes, z);
             }
         }
     }

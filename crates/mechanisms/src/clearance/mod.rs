@@ -1,20 +1,23 @@
-//! Clearance in a cut revolute joint: a journal that touches its bearing, as a load with states of its own.
+//! Clearance in a joint: a journal that touches its bearing, or a ball its socket, as a load with states of its own.
 
+mod bristles;
+mod carried;
 mod load;
 
 use linkdyn_contact::{ContactLaw, Fit, ForcePoint, NormalModel, ParameterError as ContactError};
 use linkdyn_friction::{Bristle, BristleModel, BristleStart, ParameterError as FrictionError};
+use linkdyn_kinematics::Joint;
 use thiserror::Error;
 
 pub(crate) use load::ClearanceJoint;
 
-/// Clearance of a cut revolute joint, in place of the equations that hold journal and bearing together.
+/// Clearance of a revolute or spherical joint, in place of what holds journal and bearing together.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Clearance {
-    /// Radii of hole and pin.
+    /// Radii of hole and pin, or of socket and ball.
     pub fit: Fit,
-    /// Which side of the cut has the hole.
+    /// Which side of the joint has the hole.
     pub bearing: Side,
     /// What the two may do besides.
     pub model: ClearanceModel,
@@ -29,7 +32,7 @@ pub struct Clearance {
     pub force_point: ForcePoint,
 }
 
-/// A side of a cut joint.
+/// A side of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "file", derive(schemars::JsonSchema))]
@@ -41,7 +44,7 @@ pub enum Side {
     Successor,
 }
 
-/// How a journal may move in its bearing.
+/// How a journal may move in its bearing. The first two are for revolute joints, the third for spherical ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
@@ -53,13 +56,32 @@ pub enum ClearanceModel {
         /// Length of the bearing \[m\].
         length: f64,
     },
+    /// A ball in a socket: nothing is held, and one contact in space. Turning about the line of contact costs nothing.
+    Spherical,
 }
 
 impl ClearanceModel {
+    /// Whether a joint may have this clearance.
+    pub(crate) fn fits(self, joint: &Joint) -> bool {
+        match self {
+            Self::Planar | Self::Spatial { .. } => matches!(joint, Joint::Revolute { .. }),
+            Self::Spherical => matches!(joint, Joint::Spherical | Joint::SphericalZyx),
+        }
+    }
+
+    /// Its name, for messages.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Planar => "planar",
+            Self::Spatial { .. } => "spatial",
+            Self::Spherical => "spherical",
+        }
+    }
+
     /// Number of contact points.
     pub(crate) fn points(self) -> usize {
         match self {
-            Self::Planar => 1,
+            Self::Planar | Self::Spherical => 1,
             Self::Spatial { .. } => 2,
         }
     }
@@ -116,29 +138,67 @@ pub struct ContactPoint {
     pub rate: f64,
     /// Normal force \[N\].
     pub normal: f64,
-    /// Friction on the bearing against the tangent, and against the axis \[N\].
-    pub tangent: [f64; 2],
-    /// Bristle deflections along tangent and axis \[m\].
-    pub bristle: [f64; 2],
+    /// Friction on the bearing, against the directions of [`slip`](Self::slip) \[N\].
+    pub tangent: [f64; 3],
+    /// Bristle deflections in the same directions \[m\].
+    pub bristle: [f64; 3],
     /// Speed of penetration at the beginning of the contact \[m/s\]; zero while apart.
     pub impact_speed: f64,
-    /// Sliding speed of the bearing's surface along tangent and axis \[m/s\].
-    pub slip: [f64; 2],
-    /// Centre of the journal against that of the bearing, along two axes of the bearing's frame normal to the joint's axis: y and z
-    /// for a joint along x, x and y for one along z \[m\].
-    pub journal: [f64; 2],
-    /// Whether friction along the axis is there too.
-    pub axial: bool,
+    /// Sliding velocity of the bearing's surface: along the tangent, along the axis, and zero; for a ball along the three axes of the
+    /// socket's frame \[m/s\].
+    pub slip: [f64; 3],
+    /// Centre of the journal against that of the bearing, along two axes of the bearing's frame normal to the joint's axis and along
+    /// that axis: y, z and x for a joint along x, x, y and z for one along z; for a ball along x, y and z of the socket's frame \[m\].
+    pub journal: [f64; 3],
+    /// In how many directions there is friction: none, along the tangent, along the axis too, or the three of a ball.
+    pub directions: usize,
 }
 
 impl ContactPoint {
-    /// Writes the numbers of the columns of its load.
+    /// Columns in result files for so many directions of friction.
+    pub(crate) fn columns(directions: usize) -> &'static [&'static str] {
+        const EDGE: [&str; 8] = [
+            "depth",
+            "rate",
+            "normal",
+            "tangent",
+            "bristle",
+            "impact_speed",
+            "tangent_axial",
+            "bristle_axial",
+        ];
+        const BALL: [&str; 10] = [
+            "depth",
+            "rate",
+            "normal",
+            "tangent_x",
+            "bristle_x",
+            "impact_speed",
+            "tangent_y",
+            "bristle_y",
+            "tangent_z",
+            "bristle_z",
+        ];
+        match directions {
+            0 | 1 => &EDGE[..6],
+            2 => &EDGE,
+            _ => &BALL,
+        }
+    }
+
+    /// Writes the numbers of these columns.
     pub(crate) fn write(&self, row: &mut Vec<f64>) {
-        let [tangent, axial] = self.tangent;
-        let [bristle, axial_bristle] = self.bristle;
-        row.extend([self.depth, self.rate, self.normal, tangent, bristle, self.impact_speed]);
-        if self.axial {
-            row.extend([axial, axial_bristle]);
+        let (tangent, bristle) = (&self.tangent, &self.bristle);
+        row.extend([
+            self.depth,
+            self.rate,
+            self.normal,
+            tangent[0],
+            bristle[0],
+            self.impact_speed,
+        ]);
+        for k in 1..self.directions {
+            row.extend([tangent[k], bristle[k]]);
         }
     }
 }
