@@ -29,6 +29,7 @@ mod implicit;
 mod invariances;
 mod joint_kinds;
 mod linkage_refusals;
+mod local_loops;
 mod load_internals;
 mod methods_on_scenes;
 mod newton_euler;
