@@ -1,9 +1,12 @@
 //! Loops eliminated where they close, beside all of them at once.
 
-use linkdyn_dynamics::{Formulation, lagrange};
+use linkdyn_dynamics::{Baumgarte, Formulation, ReactionLoad, System, Workspace, lagrange};
+use linkdyn_tests::ladders::Stage;
+use linkdyn_tests::loads::Rough;
 use linkdyn_tests::numbers::{condition, largest};
 use linkdyn_tests::{Blueprint, strategies};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 /// Trees with many loops, redundant ones too, whose condition is known.
 fn loops() -> impl Strategy<Value = (Blueprint, f64)> {
@@ -21,19 +24,131 @@ fn apart(found: &[f64], known: &[f64]) -> f64 {
     largest(&gaps) / largest(known).max(1.0)
 }
 
+/// Rounding of 1e-16, some of them, times the condition.
+fn rounding(condition: f64) -> f64 {
+    (1e-14 * condition).max(1e-10)
+}
+
+/// The dense way and the local one.
+const BOTH: [Formulation; 2] = [Formulation::ArticulatedBody, Formulation::LocalLoops];
+
+fn assert_same([dense, local]: &[Workspace; 2], most: f64) -> Result<(), TestCaseError> {
+    prop_assert_eq!(local.redundant(), dense.redundant());
+    let pairs = [
+        (local.rates(), dense.rates()),
+        (local.multipliers(), dense.multipliers()),
+        (local.reaction_loads(), dense.reaction_loads()),
+    ];
+    for (k, (found, known)) in pairs.into_iter().enumerate() {
+        let gap = apart(found, known);
+        prop_assert!(gap < most, "{k}: {gap:e} of {:e}", largest(known));
+    }
+    Ok(())
+}
+
 proptest! {
-    #![proptest_config(strategies::cases(300))]
+    #![proptest_config(strategies::cases(200))]
 
     #[test]
     fn accelerations_and_multipliers_are_those_of_the_dense_way((blueprint, condition) in loops()) {
-        let dense = blueprint.machine(Formulation::ArticulatedBody).evaluate();
-        let local = blueprint.machine(Formulation::LocalLoops).evaluate();
-        prop_assert_eq!(local.redundant(), dense.redundant());
-        // Rounding of 1e-16, some of them, times the condition.
-        let most = 1e-10_f64.max(1e-14 * condition);
-        for (found, known) in [(local.rates(), dense.rates()), (local.multipliers(), dense.multipliers())] {
-            let gap = apart(found, known);
-            prop_assert!(gap < most, "{gap:e} of {:e}", largest(known));
+        let both = BOTH.map(|formulation| blueprint.machine(formulation).evaluate());
+        assert_same(&both, rounding(condition))?;
+    }
+
+    /// Speeds that break the loops: redundant equations then contradict each other.
+    #[test]
+    fn so_they_are_with_drift_terms_and_loads_by_reactions(
+        (blueprint, condition) in loops(),
+        dv in prop::collection::vec(strategies::number(0.1), 80),
+    ) {
+        let both = BOTH.map(|formulation| {
+            let (mut description, links) = blueprint.description();
+            description.formulation = formulation;
+            description.baumgarte = Some(Baumgarte { alpha: 3.0, beta: 5.0 });
+            let rough = Rough { scale: 0.01, floor: 0.1, arm: 0.05 };
+            let single = |link: &&_| description.tree.speed_range(**link).len() == 1;
+            let rubbing = links.iter().filter(single).take(5);
+            description.reaction_loads = rubbing.map(|&link| (link, Arc::new(rough) as Arc<dyn ReactionLoad>)).collect();
+            let system = System::new(description).expect("valid");
+            let mut work = Workspace::new(&system);
+            let v: Vec<f64> = blueprint.speeds().iter().zip(&dv).map(|(v, d)| v + d).collect();
+            system.evaluate(0.0, &blueprint.coordinates(), &v, &mut work).expect("weak loads");
+            work
+        });
+        assert_same(&both, rounding(condition))?;
+    }
+
+    #[test]
+    fn projection_takes_the_same_way(
+        (blueprint, condition) in loops(),
+        dq in prop::collection::vec(strategies::number(1e-7), 80),
+        dv in prop::collection::vec(strategies::number(1.0), 80),
+    ) {
+        let [dense, local] = BOTH.map(|formulation| blueprint.machine(formulation));
+        let mut works = [&dense, &local].map(|machine| Workspace::new(&machine.system));
+        let off: Vec<f64> = dense.v.iter().zip(&dv).map(|(v, d)| v + d).collect();
+        let mut drifted = dense.q.clone();
+        dense.tree().displace(&mut drifted, &dq);
+        for (q, most) in [(&dense.q, rounding(condition)), (&drifted, 1e-6)] {
+            let [one, other] = [(&dense, 0), (&local, 1)].map(|(machine, k)| {
+                let (mut q, mut v) = (q.clone(), off.clone());
+                let drift = machine.system.project(&mut q, &mut v, &mut works[k]);
+                (q, v, drift)
+            });
+            // The second steps differ by products of drifts.
+            prop_assert!(apart(&other.0, &one.0) < 1e-12 * condition.max(1.0), "{:e}", apart(&other.0, &one.0));
+            prop_assert!(apart(&other.1, &one.1) < most, "{:e}", apart(&other.1, &one.1));
+            prop_assert_eq!(other.2.changed, one.2.changed);
         }
+    }
+}
+
+#[test]
+fn ladders_and_crowds_move_as_by_the_dense_way() {
+    for stage in Stage::ALL {
+        for count in [1, 2, 7, 20] {
+            let mut blueprint = stage.times(count);
+            blueprint.make_speeds_consistent();
+            let [dense, local] = BOTH.map(|formulation| blueprint.machine(formulation).evaluate());
+            let loops = blueprint.cuts.len();
+            assert_eq!(
+                (dense.redundant(), local.redundant()),
+                (3 * loops, 3 * loops),
+                "{stage:?} {count}"
+            );
+            let gaps = [
+                apart(local.rates(), dense.rates()),
+                apart(local.multipliers(), dense.multipliers()),
+            ];
+            assert!(largest(&gaps) < 1e-10, "{stage:?} {count}: {gaps:?}");
+        }
+    }
+}
+
+#[test]
+fn ladders_are_projected_as_by_the_dense_way() {
+    for stage in Stage::ALL {
+        let mut blueprint = stage.times(12);
+        blueprint.make_speeds_consistent();
+        let [dense, local] = BOTH.map(|formulation| {
+            let machine = blueprint.machine(formulation);
+            let mut work = machine.evaluate();
+            let (mut q, mut v) = (machine.q.clone(), machine.v.clone());
+            q.iter_mut()
+                .enumerate()
+                .for_each(|(k, q)| *q += 1e-6 * (k as f64).sin());
+            v.iter_mut()
+                .enumerate()
+                .for_each(|(k, v)| *v += 1e-6 * (k as f64).cos());
+            machine.system.project_beyond(1e-12, &mut q, &mut v, &mut work);
+            let (position, velocity) = machine.system.violation(&q, &v, &mut work);
+            assert!(
+                position < 1e-11 && velocity < 1e-10,
+                "{stage:?}, {formulation:?}: {position:e} {velocity:e}"
+            );
+            (q, v)
+        });
+        let gaps = [apart(&local.0, &dense.0), apart(&local.1, &dense.1)];
+        assert!(largest(&gaps) < 1e-9, "{stage:?}: {gaps:?}");
     }
 }

@@ -16,7 +16,7 @@ mod smallest;
 
 use crate::articulated::{Articulated, ArticulatedInertia, Passengers, Pivot};
 use crate::columns::Columns;
-use crate::composite::along;
+use crate::composite::{ROUNDING, along};
 use crate::constraint::{NOTHING, REDUNDANT};
 use crate::symmetric::SpatialInertia;
 use linkdyn_kinematics::{Node, NodePosition, Tree, Twist, Wrench};
@@ -29,6 +29,8 @@ pub(crate) struct LocalLoops {
     articulated: Articulated,
     loops: Loops,
     smallest: Smallest,
+    /// Scratch, an equation each.
+    known: Vec<f64>,
 }
 
 /// All multipliers, block by block, slot by slot; see [`Plan`].
@@ -43,6 +45,8 @@ struct Loops {
     rows: Vec<f64>,
     /// Diagonal of `S` before any elimination, an equation each.
     diagonal: Vec<f64>,
+    /// Error of that which inner loops have left of it, in units of rounding: small pivots of theirs magnify what they had of it.
+    error: Vec<f64>,
     /// Sum of the inverse pivots of the freedoms that move a block.
     mobility: Vec<f64>,
     /// For each block, one after the other: its own equations' columns in the order of pivots, and the inverse pivots.
@@ -61,12 +65,14 @@ impl LocalLoops {
         Self {
             articulated: Articulated::new(tree),
             smallest: Smallest::new(&plan),
+            known: vec![0.0; equations],
             loops: Loops {
                 gradient: vec![0.0; slots],
                 forces: vec![0.0; slots],
                 wrenches: vec![Wrench::zero(); slots],
                 rows: vec![0.0; entries],
                 diagonal: vec![0.0; equations],
+                error: vec![0.0; equations],
                 mobility: vec![0.0; blocks],
                 order: vec![0; equations],
                 inverse: vec![0.0; equations],
@@ -110,16 +116,42 @@ impl LocalLoops {
         loops.wrenches.fill(Wrench::zero());
         loops.rows.fill(0.0);
         loops.diagonal.fill(0.0);
+        loops.error.fill(0.0);
         loops.mobility.fill(0.0);
         loops.beta.copy_from_slice(gamma);
         self.articulated
             .factor(nodes, positions, bodies, wrenches, columns, loops)?;
         let mut ground = ArticulatedInertia::rigid(&SpatialInertia::ZERO);
         loops.gathered(0, &mut ground, &mut Wrench::zero());
-        if self.rank() < loops_equations(&self.loops) {
+        if self.is_redundant() {
             self.smallest.factor(&self.loops);
+            self.make_consistent(nodes, positions, columns, gamma);
         }
         Ok(())
+    }
+
+    fn is_redundant(&self) -> bool {
+        self.rank() < self.known.len()
+    }
+
+    /// Takes off the first column, factored with it, that part of the closure bias which no motion answers, so that it does not
+    /// matter which of the redundant equations are kept. Needs a column behind the first as scratch.
+    fn make_consistent(&mut self, nodes: &[Node], positions: &[NodePosition], columns: &mut Columns, gamma: &[f64]) {
+        const SCRATCH: usize = 1;
+        let loops = &mut self.loops;
+        self.known.copy_from_slice(&loops.beta);
+        let idle = self.smallest.idle(loops, gamma);
+        loops.beta.iter_mut().zip(idle).for_each(|(x, idle)| *x = -idle);
+        let speeds = self.articulated.inverse_diagonal().len();
+        (0..speeds).for_each(|speed| *columns.at_mut(speed, SCRATCH) = 0.0);
+        self.articulated.inward(nodes, positions, columns, SCRATCH, loops);
+        loops.gathered_column(0, &mut Wrench::zero());
+        loops
+            .beta
+            .iter_mut()
+            .zip(&self.known)
+            .for_each(|(x, known)| *x += known);
+        (0..speeds).for_each(|speed| *columns.at_mut(speed, 0) += columns.at(speed, SCRATCH));
     }
 
     /// Takes another column inward; `gamma` is the bias that goes with it, none if empty.
@@ -133,6 +165,10 @@ impl LocalLoops {
     ) {
         self.loops.beta.fill(0.0);
         self.loops.beta[..gamma.len()].copy_from_slice(gamma);
+        if self.is_redundant() && !gamma.is_empty() {
+            let idle = self.smallest.idle(&self.loops, gamma);
+            self.loops.beta.iter_mut().zip(idle).for_each(|(x, idle)| *x -= idle);
+        }
         self.articulated
             .inward(nodes, positions, columns, column, &mut self.loops);
         self.loops.gathered_column(0, &mut Wrench::zero());
@@ -153,16 +189,12 @@ impl LocalLoops {
         self.loops.arrived(0, &Twist::zero());
         self.articulated
             .outward(nodes, positions, solutions, column, &mut self.loops);
-        if self.rank() < loops_equations(&self.loops) {
-            self.smallest.shorten(&mut self.loops);
+        if self.is_redundant() {
+            let idle = self.smallest.idle(&self.loops, &self.loops.lambda);
+            self.loops.lambda.iter_mut().zip(idle).for_each(|(x, idle)| *x -= idle);
         }
         &self.loops.lambda
     }
-}
-
-/// Number of equations of all blocks.
-fn loops_equations(loops: &Loops) -> usize {
-    loops.lambda.len()
 }
 
 impl Passengers for Loops {
@@ -218,7 +250,11 @@ impl Passengers for Loops {
         let slots = self.plan.fronts[node].passing.clone();
         let forces = &self.forces[slots.clone()];
         let equations = &self.plan.equations[slots];
-        let force: f64 = forces.iter().zip(equations).map(|(force, &k)| force * self.lambda[k]).sum();
+        let force: f64 = forces
+            .iter()
+            .zip(equations)
+            .map(|(force, &k)| force * self.lambda[k])
+            .sum();
         *rate += force * inverse;
     }
 
@@ -258,13 +294,13 @@ impl Loops {
         let floor = (REDUNDANT * squares.fold(0.0, f64::max)).max(NOTHING * self.mobility[b]);
         self.rank[b] = own;
         for i in 0..own {
-            let larger = |p: usize, q: usize| if rows[q * width + q] <= rows[p * width + p] { p } else { q };
-            let p = (i + 1..own).fold(i, larger);
-            let pivot = rows[p * width + p];
-            if pivot <= floor {
+            let sure = |p: usize| rows[p * width + p] - ROUNDING * self.error[block.equations[order[p]]];
+            let p = (i + 1..own).fold(i, |p, q| if sure(q) <= sure(p) { p } else { q });
+            if sure(p) <= floor {
                 self.rank[b] = i;
                 return;
             }
+            let pivot = rows[p * width + p];
             if p != i {
                 exchange(rows, own, width, i, p);
                 order.swap(i, p);
@@ -294,8 +330,11 @@ impl Loops {
             let start = block.rows + i * width + own;
             let wrench = self.wrenches[block.slot + i];
             inertia.hold(&wrench, inverse);
+            let k = block.equations[self.order[block.first + i]];
+            let error = self.diagonal[k] + self.error[k];
             for (place, &slot) in (start..).zip(&block.others) {
                 let factor = self.rows[place] * inverse;
+                self.error[self.plan.equations[slot]] += factor * factor * error;
                 self.wrenches[slot].torque -= wrench.torque * factor;
                 self.wrenches[slot].force -= wrench.force * factor;
             }

@@ -198,9 +198,8 @@ impl Plan {
                 .filter(|&&child| active[child].iter().any(|g| own.contains(g)));
             let shared: Vec<usize> = shared.flat_map(|&child| &active[child]).copied().collect();
             let others = active[node].iter().filter(|g| shared.contains(g));
-            let equations_of = |list: &[usize]| -> Vec<usize> {
-                list.iter().flat_map(|&g| groups[g].equations.clone()).collect()
-            };
+            let equations_of =
+                |list: &[usize]| -> Vec<usize> { list.iter().flat_map(|&g| groups[g].equations.clone()).collect() };
             let mut equations = equations_of(own);
             let count = equations.len();
             equations.extend(equations_of(&others.copied().collect::<Vec<_>>()));

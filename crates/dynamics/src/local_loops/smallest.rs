@@ -1,7 +1,7 @@
 //! Multipliers of smallest norm where equations are redundant.
 //!
 //! The elimination leaves the multipliers of redundant equations at zero. Any others `z` for them do as well, if those before them in
-//! their block, and those of inner loops, answer: `mu = T [z; mu_others]`. The smallest `|lambda + mu|^2` is found by eliminating
+//! their block, and those of inner loops, answer: `mu = T [z; mu_others]`. The smallest `|lambda - mu|^2` is found by eliminating
 //! one block after the other from this sum of squares, as the closures were from the equations of motion.
 
 use super::{Loops, Plan};
@@ -87,7 +87,13 @@ impl Smallest {
         let answers = &self.answers[block.rows..block.rows + own * width];
         let squares = &self.squares[block.rows..block.rows + own * width];
         let (image, square) = (&mut self.image, &mut self.square);
-        let mixed = |i: usize, c: usize| if c < free { 0.0 } else { squares[order[i] * width + rank + c] };
+        let mixed = |i: usize, c: usize| {
+            if c < free {
+                0.0
+            } else {
+                squares[order[i] * width + rank + c]
+            }
+        };
         for i in 0..own {
             for c in 0..count {
                 let sum = (0..own).map(|k| {
@@ -99,7 +105,8 @@ impl Smallest {
         }
         for c in 0..count {
             for d in c..count {
-                let term = |i: usize| answers[i * width + c] * image[i * width + d] + mixed(i, c) * answers[i * width + d];
+                let term =
+                    |i: usize| answers[i * width + c] * image[i * width + d] + mixed(i, c) * answers[i * width + d];
                 square[c * width + d] = (0..own).map(term).sum();
             }
         }
@@ -120,9 +127,10 @@ impl Smallest {
             .each(|place, k, l| squares[place] += square[others(k) * width + others(l)]);
     }
 
-    /// Makes the multipliers the shortest that do the same.
-    pub fn shorten(&mut self, loops: &mut Loops) {
-        self.slope.copy_from_slice(&loops.lambda);
+    /// The part of multipliers that exerts no force on any freedom, which is the part of a closure bias that no motion answers:
+    /// without it they are the shortest that do the same.
+    pub fn idle(&mut self, loops: &Loops, values: &[f64]) -> &[f64] {
+        self.slope.copy_from_slice(values);
         for (b, block) in loops.plan.blocks.iter().enumerate() {
             let (own, width, rank) = (block.own, block.equations.len(), loops.rank[b]);
             let (free, count) = (own - rank, width - rank);
@@ -156,7 +164,7 @@ impl Smallest {
             for i in (0..free).rev() {
                 let factors = &self.factors[block.rows + i * width..];
                 let sum: f64 = (i + 1..count).map(|k| factors[k] * square[k]).sum();
-                square[i] = -self.known[block.first + i] - sum * self.inverse[block.first + i];
+                square[i] = self.known[block.first + i] - sum * self.inverse[block.first + i];
             }
             for i in 0..own {
                 let row = &self.answers[block.rows + i * width..][..count];
@@ -164,6 +172,6 @@ impl Smallest {
                 self.slope[k] = row.iter().zip(&*square).map(|(t, x)| t * x).sum();
             }
         }
-        loops.lambda.iter_mut().zip(&self.slope).for_each(|(l, mu)| *l += mu);
+        &self.slope
     }
 }
