@@ -72,10 +72,15 @@ proptest! {
             let system = System::new(description).expect("valid");
             let mut work = Workspace::new(&system);
             let v: Vec<f64> = blueprint.speeds().iter().zip(&dv).map(|(v, d)| v + d).collect();
-            system.evaluate(0.0, &blueprint.coordinates(), &v, &mut work).expect("weak loads");
-            work
+            let outcome = system.evaluate(0.0, &blueprint.coordinates(), &v, &mut work);
+            outcome.is_ok().then_some(work)
         });
-        assert_same(&both, rounding(condition))?;
+        let [Some(dense), Some(local)] = both.clone() else {
+            // A jammed joint is one both ways.
+            prop_assert!(both.iter().all(Option::is_none));
+            return Ok(());
+        };
+        assert_same(&[dense, local], rounding(condition))?;
     }
 
     #[test]
@@ -89,7 +94,8 @@ proptest! {
         let off: Vec<f64> = dense.v.iter().zip(&dv).map(|(v, d)| v + d).collect();
         let mut drifted = dense.q.clone();
         dense.tree().displace(&mut drifted, &dq);
-        for (q, most) in [(&dense.q, rounding(condition)), (&drifted, 1e-6)] {
+        // Both ways take the metric near the drifted state, but not at the same place.
+        for (q, most) in [(&dense.q, rounding(condition)), (&drifted, 1e-7 * condition.max(10.0))] {
             let [one, other] = [(&dense, 0), (&local, 1)].map(|(machine, k)| {
                 let (mut q, mut v) = (q.clone(), off.clone());
                 let drift = machine.system.project(&mut q, &mut v, &mut works[k]);

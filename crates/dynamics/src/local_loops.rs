@@ -311,6 +311,7 @@ impl Loops {
             let row = &done[i * width..];
             for (k, target) in (i + 1..own).zip(rest.chunks_exact_mut(width)) {
                 let factor = row[k] * inverse[i];
+                magnify(&mut self.error, block.equations[order[i]], block.equations[order[k]], factor);
                 for (x, y) in target[k..].iter_mut().zip(&row[k..]) {
                     *x -= factor * y;
                 }
@@ -331,10 +332,11 @@ impl Loops {
             let wrench = self.wrenches[block.slot + i];
             inertia.hold(&wrench, inverse);
             let k = block.equations[self.order[block.first + i]];
-            let error = self.diagonal[k] + self.error[k];
             for (place, &slot) in (start..).zip(&block.others) {
                 let factor = self.rows[place] * inverse;
-                self.error[self.plan.equations[slot]] += factor * factor * error;
+                let other = self.plan.equations[slot];
+                magnify(&mut self.error, k, other, factor);
+                self.error[other] += factor * factor * self.diagonal[k];
                 self.wrenches[slot].torque -= wrench.torque * factor;
                 self.wrenches[slot].force -= wrench.force * factor;
             }
@@ -364,6 +366,12 @@ impl Loops {
             wrench.force -= held.force * share;
         }
     }
+}
+
+/// Error of an equation's square after `factor` times another's row has been taken off: errors of inner loops may all have one sign.
+#[inline]
+fn magnify(error: &mut [f64], from: usize, to: usize, factor: f64) {
+    error[to] = (error[to].sqrt() + factor.abs() * error[from].sqrt()).powi(2);
 }
 
 /// Exchanges places `i < p` of a symmetric matrix kept by its upper triangle, with more columns behind.
