@@ -32,6 +32,7 @@ mod joint_kinds;
 mod limits;
 mod linkage_refusals;
 mod load_internals;
+mod local_loops;
 mod methods_on_scenes;
 mod newton_euler;
 mod peers;

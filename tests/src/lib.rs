@@ -3,6 +3,7 @@
 
 mod blueprint;
 pub mod budget;
+pub mod ladders;
 pub mod linkages;
 pub mod loads;
 #[path = "../../crates/integrators/tests/it/methods.rs"]

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Articulated inertia about a node's origin, global axes: `torque = I alpha + H a`, `force = H^T alpha + M a`.
 #[derive(Clone, Copy, Debug)]
-struct ArticulatedInertia {
+pub(crate) struct ArticulatedInertia {
     angular: Symmetric,
     coupling: Matrix3<f64>,
     linear: Symmetric,
@@ -17,7 +17,7 @@ struct ArticulatedInertia {
 
 impl ArticulatedInertia {
     #[inline]
-    fn rigid(body: &SpatialInertia) -> Self {
+    pub fn rigid(body: &SpatialInertia) -> Self {
         Self {
             angular: body.second,
             coupling: body.moment.cross_matrix(),
@@ -31,6 +31,12 @@ impl ArticulatedInertia {
         self.angular.subtract_square(inverse, &u.torque);
         self.linear.subtract_square(inverse, &u.force);
         self.coupling -= u.torque * (u.force * inverse).transpose();
+    }
+
+    /// Adds what a multiplier holds fast that acts by `w` and of which `inverse` is the inverse pivot.
+    #[inline]
+    pub fn hold(&mut self, w: &Wrench, inverse: f64) {
+        self.release(w, -inverse);
     }
 
     /// Adds the same inertia seen from a point that lies `arm` before the origin to `target`.
@@ -65,10 +71,39 @@ impl ArticulatedInertia {
 
 /// What one freedom leaves behind: its wrench `U = IA S` and `1/(S U)`.
 #[derive(Clone, Copy, Debug)]
-struct Pivot {
-    u: Wrench,
-    inverse: f64,
+pub(crate) struct Pivot {
+    pub u: Wrench,
+    pub inverse: f64,
 }
+
+impl Pivot {
+    /// That of a node without a freedom.
+    const NONE: Self = Self {
+        u: Wrench {
+            torque: Vector3::new(0.0, 0.0, 0.0),
+            force: Vector3::new(0.0, 0.0, 0.0),
+        },
+        inverse: 0.0,
+    };
+}
+
+/// What multipliers that are eliminated on the way do to the walks; without such, nothing.
+pub(crate) trait Passengers {
+    /// All that hangs on `node` has come in, its own freedom is still to be released.
+    fn gathered(&mut self, _node: usize, _inertia: &mut ArticulatedInertia, _wrench: &mut Wrench) {}
+    /// The freedom of `node` has been released, with the share (force by pivot) that it takes of the column.
+    fn released(&mut self, _index: usize, _node: &Node, _here: &NodePosition, _pivot: &Pivot, _share: f64) {}
+    /// As `gathered`, with known factors.
+    fn gathered_column(&mut self, _node: usize, _wrench: &mut Wrench) {}
+    /// As `released`, with known factors.
+    fn released_column(&mut self, _node: usize, _share: f64) {}
+    /// Adds what the multipliers do to the rate of the freedom of `node`; the walk outward has passed all nodes before.
+    fn add_to_rate(&self, _node: usize, _inverse: f64, _rate: &mut f64) {}
+    /// The acceleration of `node` is known.
+    fn arrived(&mut self, _node: usize, _acceleration: &Twist) {}
+}
+
+impl Passengers for () {}
 
 /// Factors of the articulated-body recursion.
 #[derive(Clone, Debug)]
@@ -86,13 +121,9 @@ pub(crate) struct Articulated {
 impl Articulated {
     pub fn new(tree: &Tree) -> Self {
         let nodes = tree.nodes().len();
-        let pivot = Pivot {
-            u: Wrench::zero(),
-            inverse: 0.0,
-        };
         Self {
             inertias: vec![ArticulatedInertia::rigid(&SpatialInertia::ZERO); nodes],
-            pivots: vec![pivot; nodes],
+            pivots: vec![Pivot::NONE; nodes],
             floors: vec![(0.0, 0.0); nodes],
             inverse_diagonal: vec![0.0; tree.speeds()],
             wrenches: vec![Wrench::zero(); nodes],
@@ -110,6 +141,7 @@ impl Articulated {
         bodies: &[SpatialInertia],
         wrenches: &[Wrench],
         columns: &mut Columns,
+        passengers: &mut impl Passengers,
     ) -> Result<(), (usize, f64)> {
         for (articulated, body) in self.inertias.iter_mut().zip(bodies) {
             *articulated = ArticulatedInertia::rigid(body);
@@ -120,6 +152,7 @@ impl Articulated {
             let (node, here) = (&nodes[i], &positions[i]);
             let mut inertia = self.inertias[i];
             let mut wrench = self.wrenches[i];
+            passengers.gathered(i, &mut inertia, &mut wrench);
             let floors = (
                 self.floors[i].0.max(ROUNDING * inertia.linear.trace()),
                 self.floors[i].1.max(ROUNDING * inertia.angular.trace()),
@@ -159,6 +192,9 @@ impl Articulated {
                     wrench.torque += u.torque * share;
                     wrench.force += u.force * share;
                 }
+                passengers.released(i, node, here, &self.pivots[i], *force * inverse);
+            } else {
+                passengers.released(i, node, here, &Pivot::NONE, 0.0);
             }
             if node.parent != 0 {
                 self.wrenches[node.parent] += wrench.shifted(&here.arm);
@@ -175,11 +211,19 @@ impl Articulated {
     }
 
     /// Takes a column of generalised forces inward.
-    pub fn inward(&mut self, nodes: &[Node], positions: &[NodePosition], columns: &mut Columns, column: usize) {
+    pub fn inward(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        columns: &mut Columns,
+        column: usize,
+        passengers: &mut impl Passengers,
+    ) {
         self.wrenches.fill(Wrench::zero());
         for i in (1..nodes.len()).rev() {
             let (node, here) = (&nodes[i], &positions[i]);
             let mut wrench = self.wrenches[i];
+            passengers.gathered_column(i, &mut wrench);
             if node.freedom != Freedom::None {
                 let force = columns.at_mut(node.speed, column);
                 *force -= along(node, here, &wrench);
@@ -187,6 +231,7 @@ impl Articulated {
                 let share = *force * pivot.inverse;
                 wrench.torque += pivot.u.torque * share;
                 wrench.force += pivot.u.force * share;
+                passengers.released_column(i, share);
             }
             if node.parent != 0 {
                 self.wrenches[node.parent] += wrench.shifted(&here.arm);
@@ -196,7 +241,14 @@ impl Articulated {
 
     /// Takes a column, already divided by the pivots, outward to rates of the speeds.
     #[inline]
-    pub fn outward(&mut self, nodes: &[Node], positions: &[NodePosition], columns: &mut Columns, column: usize) {
+    pub fn outward(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        columns: &mut Columns,
+        column: usize,
+        passengers: &mut impl Passengers,
+    ) {
         for i in 1..nodes.len() {
             let (node, here) = (&nodes[i], &positions[i]);
             let before = self.twists[node.parent];
@@ -207,12 +259,14 @@ impl Articulated {
             if node.freedom != Freedom::None {
                 let pivot = &self.pivots[i];
                 let rate = columns.at_mut(node.speed, column);
+                passengers.add_to_rate(i, pivot.inverse, rate);
                 if node.parent != 0 {
                     *rate -= pivot.u.power(&twist) * pivot.inverse;
                 }
                 node.advance(&here.axis, |_| *rate, &mut twist);
             }
             self.twists[i] = twist;
+            passengers.arrived(i, &twist);
         }
     }
 }

@@ -10,12 +10,12 @@ use crate::linear::{cholesky, cholesky_solve};
 
 /// A pivot of `S` below this share of the largest diagonal counts as zero: the equation is redundant. `S` holds squares, so
 /// this is a share of 1e-6 in the closure gradient.
-const REDUNDANT: f64 = 1e-12;
+pub(crate) const REDUNDANT: f64 = 1e-12;
 /// Without pivoting, rounding of 1e-16 grows by the pivots before: two of this share of their diagonals leave 1e-6. A smaller
 /// pivot is looked at again with pivoting, which keeps rounding near 1e-16.
 const DOUBTFUL: f64 = 1e-5;
 /// A diagonal of `S` below this share of `trace(D^-1)` stands for levers of 1e-12 m: rounding of an equation that nothing moves.
-const NOTHING: f64 = 1e-24;
+pub(crate) const NOTHING: f64 = 1e-24;
 
 /// Factors of `S`, and the multipliers.
 #[derive(Clone, Debug)]
@@ -53,22 +53,49 @@ impl Multipliers {
     /// For `m` equations and so many columns in all.
     pub fn new(m: usize, columns: usize) -> Self {
         Self {
-            m,
             tableau: Columns::new(m, columns),
             diagonal: vec![0.0; m],
-            all: Columns::new(m, columns),
             inverse: vec![0.0; m],
-            gamma: vec![0.0; m],
-            lambda: vec![0.0; m],
-            rank: m,
-            pivoted: false,
             singular: Singular {
                 factor: vec![0.0; m * m],
                 gram: vec![0.0; m * m],
                 order: vec![0; m],
                 scratch: vec![0.0; m],
             },
+            ..Self::found_elsewhere(m, columns)
         }
+    }
+
+    /// As [`Multipliers::new`], for multipliers that are found in another way: nothing to factor with.
+    pub fn found_elsewhere(m: usize, columns: usize) -> Self {
+        Self {
+            m,
+            tableau: Columns::new(0, columns),
+            diagonal: Vec::new(),
+            all: Columns::new(m, columns),
+            inverse: Vec::new(),
+            gamma: vec![0.0; m],
+            lambda: vec![0.0; m],
+            rank: m,
+            pivoted: false,
+            singular: Singular {
+                factor: Vec::new(),
+                gram: Vec::new(),
+                order: Vec::new(),
+                scratch: Vec::new(),
+            },
+        }
+    }
+
+    /// Takes over the multipliers for one column, of equations of which `rank` are independent.
+    pub fn take(&mut self, multipliers: &[f64], column: usize, rank: usize) {
+        for (k, lambda) in multipliers.iter().enumerate() {
+            *self.all.at_mut(k, column) = *lambda;
+        }
+        if column == 0 {
+            self.lambda.copy_from_slice(multipliers);
+        }
+        self.rank = rank;
     }
 
     pub fn multipliers(&self) -> &[f64] {

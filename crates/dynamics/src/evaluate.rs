@@ -8,6 +8,7 @@ use crate::symmetric::SpatialInertia;
 use crate::system::{Formulation, System};
 use crate::workspace::{MassFactor, Workspace, moves};
 use linkdyn_kinematics::{Twist, Wrench};
+use std::ops::Range;
 
 impl System {
     /// Accelerations and multipliers at time `t` \[s\], coordinates `q` and speeds `v`; they are found in `work`.
@@ -72,20 +73,35 @@ impl System {
                 equations.write(mass.matrix_mut(), &mut work.columns, &mut work.constraint.gamma);
                 mass.factor()
             }
+            MassFactor::LocalLoops(_) => {
+                self.closure_columns(at, work);
+                self.factor_mass(work)
+            }
             _ => self.factor_mass(work),
         };
         factored.map_err(|(speed, pivot)| DynamicsError::SingularMass { time: t, speed, pivot })?;
+        if let MassFactor::LocalLoops(_) = work.mass {
+            return Ok(());
+        }
         self.closure_columns(at, work);
+        let units = self.unit_columns(work);
         match &mut work.mass {
             MassFactor::Composite(mass) => mass.inward(&mut work.columns),
             MassFactor::Articulated(mass) => {
-                let (nodes, first_unit) = (self.tree.nodes(), self.first_unit());
-                for column in (1..=self.equations).chain(first_unit..first_unit + self.reaction_loads.len()) {
-                    mass.inward(nodes, work.positions.nodes(), &mut work.columns, column);
+                for column in (1..=self.equations).chain(units) {
+                    let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+                    mass.inward(nodes, positions, &mut work.columns, column, &mut ());
                 }
             }
+            MassFactor::LocalLoops(_) => {}
         }
         Ok(())
+    }
+
+    /// Columns of the unit forces of reaction loads.
+    #[inline]
+    fn unit_columns(&self, work: &Workspace) -> Range<usize> {
+        work.first_unit..work.first_unit + self.reaction_loads.len()
     }
 
     /// Factors of the mass matrix from the links' own inertias, their own wrenches taken inward; else speed and pivot that are singular.
@@ -99,7 +115,11 @@ impl System {
                 mass.factor()
             }
             MassFactor::Articulated(mass) => {
-                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns)
+                mass.factor(nodes, positions, &work.inertias, &work.own, &mut work.columns, &mut ())
+            }
+            MassFactor::LocalLoops(mass) => {
+                let (columns, gamma) = (&mut work.columns, &work.constraint.gamma);
+                mass.factor(nodes, positions, &work.inertias, &work.own, columns, gamma)
             }
         }
     }
@@ -191,17 +211,18 @@ impl System {
         let (positions, velocities) = (&work.positions, &work.velocities);
         let lagrange = self.formulation == Formulation::Lagrange;
         let mut first = 0;
-        for closure in &self.closures {
+        for (number, closure) in self.closures.iter().enumerate() {
             let range = first..first + closure.equations();
             if !lagrange {
-                let columns = &mut work.columns;
-                closure.gradient_and_bias(
-                    positions,
-                    velocities,
-                    &work.biases,
-                    |speed, equation, value| *columns.at_mut(speed, 1 + first + equation) = value,
-                    &mut work.constraint.gamma[range.clone()],
-                );
+                let (columns, biases) = (&mut work.columns, &work.biases);
+                let gamma = &mut work.constraint.gamma[range.clone()];
+                if let MassFactor::LocalLoops(mass) = &mut work.mass {
+                    let put = |speed, equation, value| mass.put(number, speed, equation, value);
+                    closure.gradient_and_bias(positions, velocities, biases, put, gamma);
+                } else {
+                    let put = |speed, equation, value| *columns.at_mut(speed, 1 + first + equation) = value;
+                    closure.gradient_and_bias(positions, velocities, biases, put, gamma);
+                }
             }
             if let Some(drift) = self.baumgarte {
                 let gamma = &mut work.constraint.gamma[range.clone()];
@@ -220,40 +241,61 @@ impl System {
             first += closure.equations();
         }
         if !self.guided.is_empty() {
-            let columns = &mut work.columns;
-            self.guide_gradient(|speed, equation, value| *columns.at_mut(speed, 1 + equation) = value);
+            self.put_guides(work);
             self.guide_biases(at.t, at.q, at.v, work);
         }
         for (k, load) in self.reaction_loads.iter().enumerate() {
-            *work.columns.at_mut(load.speed, self.first_unit() + k) = 1.0;
+            *work.columns.at_mut(load.speed, work.first_unit + k) = 1.0;
         }
     }
 
     /// Multipliers and rates for all right-hand sides; those for the generalised forces become the result.
     #[inline]
     fn solve(&self, work: &mut Workspace) {
-        let inverse = work.mass.inverse_diagonal();
-        if self.equations > 0 {
-            work.constraint.factor(&work.columns, inverse);
+        if let MassFactor::LocalLoops(_) = work.mass {
+            self.solve_local_loops(work);
+        } else {
+            let inverse = work.mass.inverse_diagonal();
+            if self.equations > 0 {
+                work.constraint.factor(&work.columns, inverse);
+            }
+            work.constraint.solve_all(&work.columns, inverse, &mut work.solutions);
+            self.outward(work);
         }
-        work.constraint.solve_all(&work.columns, inverse, &mut work.solutions);
-        self.outward(work);
         for (speed, rate) in work.rates.iter_mut().enumerate() {
             *rate = work.solutions.at(speed, 0);
+        }
+    }
+
+    /// The same with loops that have been eliminated one by one, one column after the other.
+    fn solve_local_loops(&self, work: &mut Workspace) {
+        let units = self.unit_columns(work);
+        let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+        if let MassFactor::LocalLoops(mass) = &mut work.mass {
+            for column in (0..1).chain(units) {
+                if column > 0 {
+                    mass.inward(nodes, positions, &mut work.columns, column, &[]);
+                }
+                let rank = mass.rank();
+                let multipliers = mass.outward(nodes, positions, &work.columns, &mut work.solutions, column);
+                work.constraint.take(multipliers, column, rank);
+            }
         }
     }
 
     /// Takes the solutions, divided by the pivots, outward.
     #[inline]
     pub(crate) fn outward(&self, work: &mut Workspace) {
+        let units = self.unit_columns(work);
         match &mut work.mass {
             MassFactor::Composite(mass) => mass.outward(&mut work.solutions),
             MassFactor::Articulated(mass) => {
-                let first_unit = self.first_unit();
-                for column in (0..1).chain(first_unit..first_unit + self.reaction_loads.len()) {
-                    mass.outward(self.tree.nodes(), work.positions.nodes(), &mut work.solutions, column);
+                for column in (0..1).chain(units) {
+                    let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+                    mass.outward(nodes, positions, &mut work.solutions, column, &mut ());
                 }
             }
+            MassFactor::LocalLoops(_) => {}
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Prescribed motion of single coordinates: equations that depend on time, behind those of the closures.
 
 use crate::system::System;
-use crate::workspace::Workspace;
+use crate::workspace::{MassFactor, Workspace};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -64,11 +64,15 @@ impl System {
         }
     }
 
-    /// Gradient: `put` is told speed, equation and entry.
+    /// Puts the gradient where it is taken inward.
     #[inline]
-    pub(crate) fn guide_gradient(&self, mut put: impl FnMut(usize, usize, f64)) {
+    pub(crate) fn put_guides(&self, work: &mut Workspace) {
+        let (closures, first) = (self.closures.len(), 1 + self.closure_equations);
         for (k, guided) in self.guided.iter().enumerate() {
-            put(guided.speed, self.closure_equations + k, 1.0);
+            match &mut work.mass {
+                MassFactor::LocalLoops(mass) => mass.put(closures + k, guided.speed, 0, 1.0),
+                _ => *work.columns.at_mut(guided.speed, first + k) = 1.0,
+            }
         }
     }
 

@@ -89,7 +89,7 @@ impl System {
     pub(crate) fn find_influence(&self, work: &mut Workspace) {
         let rank = self.equations - work.constraint.redundant();
         let freedoms = self.tree.speeds().saturating_sub(rank);
-        let (own, first_unit) = (&self.reaction_loads, self.first_unit());
+        let (own, first_unit) = (&self.reaction_loads, work.first_unit);
         let influence = &mut work.reaction_loop.influence;
         influence.response.find(
             influence.loads.min(freedoms),
@@ -160,7 +160,7 @@ impl System {
         let multipliers = work.constraint.all();
         let felt = &mut influence.felt[w * (1 + 4 * width)..][..1 + loads];
         for (k, felt) in felt.iter_mut().enumerate() {
-            let column = if k == 0 { 0 } else { self.first_unit() + k - 1 };
+            let column = if k == 0 { 0 } else { work.first_unit + k - 1 };
             let mut sum = [Four::ZERO; N];
             let mut add = |felt: &Felt, factor: f64| sum = from_fn(|i| sum[i] + felt[i] * factor);
             for (unit, multiplier) in influence.units.iter().zip(multipliers.column(column)) {

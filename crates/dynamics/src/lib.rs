@@ -17,6 +17,7 @@ mod lanes;
 mod lever;
 mod linear;
 mod load;
+mod local_loops;
 mod project;
 mod reaction;
 mod reaction_loop;

@@ -23,8 +23,8 @@ pub struct Drift {
 }
 
 impl System {
-    /// Moves `q` and `v` back onto the closures and prescribed motions at time `t` \[s\] along the shortest way in the metric of the mass matrix there. What `work` has been used
-    /// for before does not matter.
+    /// Moves `q` and `v` back onto the closures and prescribed motions at time `t` \[s\] along the shortest way in the metric of the mass
+    /// matrix there. What `work` has been used for before does not matter.
     ///
     /// This is meant for drift: from far away use [`linkdyn_kinematics::assembly`].
     pub fn project(&self, t: f64, q: &mut [f64], v: &mut [f64], work: &mut Workspace) -> Drift {
@@ -50,6 +50,9 @@ impl System {
         work.own.fill(Wrench::zero());
         self.own_wrenches(work);
         work.columns.clear();
+        if let MassFactor::LocalLoops(_) = work.mass {
+            self.put_gradient(work);
+        }
         self.factor_mass(work).is_ok()
     }
 
@@ -92,7 +95,9 @@ impl System {
             if residual.is_nan() || residual <= tolerance.max(ROUNDING * size) {
                 break;
             }
-            self.factor_closures(work, &mut factored);
+            if !self.factor_closures(work, &mut factored) {
+                break;
+            }
             self.closure_step(work);
             self.tree.displace(q, &work.rates);
             self.tree.positions(q, &mut work.positions);
@@ -101,8 +106,7 @@ impl System {
         self.tree.velocities(&work.positions, v, &mut work.velocities);
         let fastest = v.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
         drift.velocity = self.rate(t, v, work);
-        if drift.velocity > tolerance.max(ROUNDING * size * fastest) {
-            self.factor_closures(work, &mut factored);
+        if drift.velocity > tolerance.max(ROUNDING * size * fastest) && self.factor_closures(work, &mut factored) {
             self.closure_step(work);
             v.iter_mut().zip(&work.rates).for_each(|(v, step)| *v += step);
             drift.changed = true;
@@ -142,44 +146,62 @@ impl System {
         largest(&work.constraint.lambda)
     }
 
-    /// Closure gradient at the present positions, taken inward and factored; once is enough for a small drift.
-    fn factor_closures(&self, work: &mut Workspace, factored: &mut bool) {
+    /// Closure gradient at the present positions, taken inward and factored; once is enough for a small drift. False where that fails,
+    /// which it can only if the mass matrix has to be factored with it.
+    fn factor_closures(&self, work: &mut Workspace, factored: &mut bool) -> bool {
         if std::mem::replace(factored, true) {
-            return;
+            return true;
         }
         work.columns.clear();
-        let mut first = 0;
-        for closure in &self.closures {
-            closure.gradient(&work.positions, |speed, equation, value| {
-                *work.columns.at_mut(speed, 1 + first + equation) = value;
-            });
-            first += closure.equations();
-        }
-        let columns = &mut work.columns;
-        self.guide_gradient(|speed, equation, value| *columns.at_mut(speed, 1 + equation) = value);
+        self.put_gradient(work);
         match &mut work.mass {
             MassFactor::Composite(mass) => mass.inward(&mut work.columns),
             MassFactor::Articulated(mass) => {
                 for column in 1..=self.equations {
-                    mass.inward(self.tree.nodes(), work.positions.nodes(), &mut work.columns, column);
+                    let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+                    mass.inward(nodes, positions, &mut work.columns, column, &mut ());
                 }
             }
+            MassFactor::LocalLoops(_) => return self.factor_mass(work).is_ok(),
         }
         work.constraint.factor(&work.columns, work.mass.inverse_diagonal());
+        true
+    }
+
+    /// Puts the closure gradient where it is taken inward.
+    fn put_gradient(&self, work: &mut Workspace) {
+        let mut first = 0;
+        for (number, closure) in self.closures.iter().enumerate() {
+            let (mass, columns) = (&mut work.mass, &mut work.columns);
+            closure.gradient(&work.positions, |speed, equation, value| match mass {
+                MassFactor::LocalLoops(mass) => mass.put(number, speed, equation, value),
+                _ => *columns.at_mut(speed, 1 + first + equation) = value,
+            });
+            first += closure.equations();
+        }
+        self.put_guides(work);
     }
 
     /// The step `-M^-1 G^T S^-1 r` for the residual or rate `r` in `lambda`, left in `rates`.
     fn closure_step(&self, work: &mut Workspace) {
         let m = self.equations;
-        work.constraint.solve();
-        work.solutions.clear();
-        let inverse = work.mass.inverse_diagonal();
-        for (i, inverse) in inverse.iter().enumerate() {
-            let lambda = work.constraint.lambda[..m].iter().enumerate();
-            let sum: f64 = lambda.map(|(k, l)| work.columns.at(i, 1 + k) * l).sum();
-            *work.solutions.at_mut(i, 0) = -sum * inverse;
+        if let MassFactor::LocalLoops(mass) = &mut work.mass {
+            // The step is the acceleration of a system without forces, with the residual as bias.
+            let (nodes, positions) = (self.tree.nodes(), work.positions.nodes());
+            work.columns.clear();
+            mass.inward(nodes, positions, &mut work.columns, 0, &work.constraint.lambda);
+            mass.outward(nodes, positions, &work.columns, &mut work.solutions, 0);
+        } else {
+            work.constraint.solve();
+            work.solutions.clear();
+            let inverse = work.mass.inverse_diagonal();
+            for (i, inverse) in inverse.iter().enumerate() {
+                let lambda = work.constraint.lambda[..m].iter().enumerate();
+                let sum: f64 = lambda.map(|(k, l)| work.columns.at(i, 1 + k) * l).sum();
+                *work.solutions.at_mut(i, 0) = -sum * inverse;
+            }
+            self.outward(work);
         }
-        self.outward(work);
         for (i, rate) in work.rates.iter_mut().enumerate() {
             *rate = work.solutions.at(i, 0);
         }

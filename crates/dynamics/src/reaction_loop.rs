@@ -303,7 +303,7 @@ impl System {
         let state = &mut work.reaction_loop;
         state.forces.copy_from_slice(&state.trial);
         state.influence.add_rates(&state.forces, &mut work.rates);
-        work.constraint.add_loads(self.first_unit(), &state.forces);
+        work.constraint.add_loads(work.first_unit, &state.forces);
         for (force, on) in state.forces.iter().zip(&self.reaction_loads) {
             work.power += force * v[on.speed];
         }

@@ -23,13 +23,16 @@ pub struct Baumgarte {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Formulation {
-    /// Recursive; composite bodies where branches are short, articulated bodies where they are long.
+    /// Recursive; composite bodies where branches are short, articulated bodies where they are long, and many loops eliminated one by
+    /// one where that takes less work.
     #[default]
     Recursive,
     /// Recursive with composite bodies, whatever the size.
     CompositeBody,
     /// Recursive with articulated bodies, whatever the size.
     ArticulatedBody,
+    /// Recursive with articulated bodies and loops eliminated where they close, whatever the size.
+    LocalLoops,
     /// The papers' Lagrange equations with traces of `T_i H T_j^T`. Slow and allocating: for comparison.
     Lagrange,
 }
@@ -291,12 +294,6 @@ impl System {
     /// Inertias, one a link in the order of attachment.
     pub fn inertias(&self) -> &[RigidInertia] {
         &self.inertias
-    }
-
-    /// The column of the first unit reaction load among all right-hand sides, behind those of generalised forces and closures:
-    /// a multiple of four.
-    pub(crate) fn first_unit(&self) -> usize {
-        (1 + self.equations).next_multiple_of(4)
     }
 
     /// Gravity \[m/s^2\].

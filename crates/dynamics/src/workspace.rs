@@ -4,6 +4,7 @@ use crate::articulated::Articulated;
 use crate::columns::Columns;
 use crate::composite::Composite;
 use crate::constraint::Multipliers;
+use crate::local_loops::{LocalLoops, Plan};
 use crate::reaction_loop::ReactionLoop;
 use crate::symmetric::SpatialInertia;
 use crate::system::{Formulation, System};
@@ -29,6 +30,7 @@ pub struct Counters {
 pub(crate) enum MassFactor {
     Composite(Composite),
     Articulated(Articulated),
+    LocalLoops(LocalLoops),
 }
 
 impl MassFactor {
@@ -38,6 +40,7 @@ impl MassFactor {
         match self {
             MassFactor::Composite(mass) => mass.inverse_diagonal(),
             MassFactor::Articulated(mass) => mass.inverse_diagonal(),
+            MassFactor::LocalLoops(mass) => mass.inverse_diagonal(),
         }
     }
 }
@@ -57,6 +60,8 @@ pub struct Workspace {
     pub(crate) mass: MassFactor,
     /// Right-hand sides, a row each speed: generalised forces, closure gradient `G^T`, unit forces of reaction loads.
     pub(crate) columns: Columns,
+    /// The column of the first unit reaction load, behind those of generalised forces and closures: a multiple of four.
+    pub(crate) first_unit: usize,
     /// Rates of the speeds for each right-hand side (those of the closure gradient mean nothing).
     pub(crate) solutions: Columns,
     /// Generalised forces of loads, kept for their power.
@@ -77,6 +82,11 @@ pub struct Workspace {
 /// `evaluation` on chains of revolute joints.
 const COMPOSITE_DEPTH: usize = 6;
 
+/// Fewer closure equations are always solved for at once, without a look at the work it takes.
+const FEWEST_EQUATIONS: usize = 12;
+/// Multiplications and additions that a dense column takes a speed, nearly, beside those for `S`.
+const DENSE_COLUMN: usize = 50;
+
 impl Workspace {
     /// Scratch for `system`.
     pub fn new(system: &System) -> Self {
@@ -85,15 +95,24 @@ impl Workspace {
         let depth = tree.joints().iter().map(|(link, _)| tree.path(*link).count()).max();
         let composite = match system.formulation {
             Formulation::Recursive => depth.unwrap_or(0) <= COMPOSITE_DEPTH,
-            Formulation::ArticulatedBody => false,
+            Formulation::ArticulatedBody | Formulation::LocalLoops => false,
             Formulation::CompositeBody | Formulation::Lagrange => true,
         };
-        let mass = if composite {
+        let mass = if let Some(plan) = plan_of_loops(system) {
+            MassFactor::LocalLoops(LocalLoops::new(tree, plan))
+        } else if composite {
             MassFactor::Composite(Composite::new(tree))
         } else {
             MassFactor::Articulated(Articulated::new(tree))
         };
-        let columns = system.first_unit() + system.reaction_loads.len();
+        let is_dense = !matches!(mass, MassFactor::LocalLoops(_));
+        let first_unit = if is_dense { 1 + system.equations } else { 1 }.next_multiple_of(4);
+        let columns = first_unit + system.reaction_loads.len();
+        let constraint = if is_dense {
+            Multipliers::new(system.equations, columns)
+        } else {
+            Multipliers::found_elsewhere(system.equations, columns)
+        };
         Self {
             positions: Positions::new(tree),
             velocities: Velocities::new(tree),
@@ -107,7 +126,8 @@ impl Workspace {
             generalised: vec![0.0; tree.speeds()],
             state_rates: vec![0.0; system.internals.states],
             integral_rates: vec![0.0; system.internals.integrals],
-            constraint: Multipliers::new(system.equations, columns),
+            constraint,
+            first_unit,
             reaction_loop: ReactionLoop::new(system),
             rates: vec![0.0; tree.speeds()],
             reactions: vec![Wrench::zero(); nodes],
@@ -175,6 +195,19 @@ impl Workspace {
     /// Work done so far.
     pub fn counters(&self) -> Counters {
         self.counters
+    }
+}
+
+/// The plan by which loops are eliminated, where that is wanted or takes less work.
+fn plan_of_loops(system: &System) -> Option<Plan> {
+    let (n, m) = (system.tree.speeds(), system.equations);
+    match system.formulation {
+        Formulation::LocalLoops => Some(Plan::new(system)),
+        Formulation::Recursive if m >= FEWEST_EQUATIONS => {
+            let plan = Plan::new(system);
+            (plan.cost() < m * (m + DENSE_COLUMN) * n).then_some(plan)
+        }
+        _ => None,
     }
 }
 
