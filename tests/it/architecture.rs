@@ -388,9 +388,11 @@ fn lints_hold_for_every_member() {
     for lint in ["unsafe_code = \"forbid\"", "missing_docs = \"deny\""] {
         assert!(workspace.contains(lint), "Cargo.toml lacks `{lint}`");
     }
-    for manifest in files(".").iter().filter(|path| path.ends_with("/Cargo.toml")) {
+    let manifests = files(".").into_iter().filter(|path| path.ends_with("/Cargo.toml"));
+    // The fuzz targets are a workspace of their own: their harness is unsafe code.
+    for manifest in manifests.filter(|path| !path.contains("fuzz/")) {
         assert!(
-            read(manifest).contains("[lints]\nworkspace = true"),
+            read(&manifest).contains("[lints]\nworkspace = true"),
             "{manifest} does not take the lints"
         );
     }
