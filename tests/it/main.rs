@@ -49,6 +49,7 @@ mod resting_contact;
 mod rsrrr;
 mod rsup;
 mod scene_benchmarks;
+mod scene_bricard;
 mod scene_examples;
 mod scene_faults;
 mod scene_files;
