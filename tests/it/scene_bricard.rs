@@ -66,14 +66,14 @@ fn benchmark_08_bricard_swings_on_its_curve_and_keeps_its_energy() {
         }
         assert!(a > -1e-9 && a < PI + 1e-9, "t = {}: {a}", row.t);
         let [kinetic, potential] = energies(a, row.v[angles[0]]);
-        // Five joules go to and fro: the limit of 1e-8 of that.
+        // 4.6 J go to and fro: the limit is 1e-8 of that.
         assert!(
-            (kinetic + potential - start).abs() < 5e-8,
+            (kinetic + potential - start).abs() < 4.5e-8,
             "t = {}: {kinetic} {potential}",
             row.t
         );
         assert!(
-            (row.energy.total() - rows[0].energy.total()).abs() < 5e-8,
+            (row.energy.total() - rows[0].energy.total()).abs() < 4.5e-8,
             "t = {}",
             row.t
         );
@@ -81,7 +81,7 @@ fn benchmark_08_bricard_swings_on_its_curve_and_keeps_its_energy() {
         furthest = furthest.max(a);
         largest = largest.max(kinetic);
     }
-    assert!(furthest > 0.99 * PI && largest > 5.0, "{furthest} {largest}");
+    assert!(furthest > 0.99 * PI && largest > 4.5, "{furthest} {largest}");
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn four_bar_turns_fully_as_freudenthal_says() {
     let (crank, rocker) = (index(&scene, "A"), index(&scene, "D"));
     let run = simulate(&scene, Adams::default(), 1e-10, 1.5, 0.01);
     run.end.expect("runs to its end");
-    let (a, b, c, d) = (0.1, 0.35, 0.25, 0.4);
+    let (a, b, c, d) = (0.1, 0.35, 0.25, 0.4_f64);
     let (r1, r2, r3) = (d / a, d / c, (a * a - b * b + c * c + d * d) / (2.0 * a * c));
     let mut turned = 0.0_f64;
     for row in run.rows {

@@ -166,9 +166,9 @@ mod tests {
         let at = [200.0, 100.0];
         taken.lines.push([[200.0, 100.0, 0.0], [200.0, 20.0, 0.0]]);
         taken.discs.push(([212.0, 92.0], 8.0));
-        let y = |text: Text| format!("{:?}", text.get_inner().get_attributes()["x"]);
-        let first = taken.around("name", at, 8.0, "#000000").expect("place");
-        assert!(y(first).contains("17"), "to the left");
+        assert!(taken.around("name", at, 8.0, "#000000").is_some());
+        // Neither above, where the line is, nor to the right, where the symbol is.
+        assert!(taken.boxes[0].middle[0] < 190.0, "{:?}", taken.boxes[0].middle);
         assert!(taken.around("name", at, 8.0, "#000000").is_some());
         assert_eq!(taken.boxes.len(), 2);
         assert!(!taken.boxes[0].meets(&taken.boxes[1]));

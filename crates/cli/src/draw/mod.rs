@@ -42,7 +42,8 @@ pub fn draw(args: &DrawArgs) -> Result<(), CliError> {
         let message = format!("`{}` is no picture that can be drawn", args.out.display());
         return Err(CliError::usage(message).with_hint("give a name that ends in .svg or .png"));
     }
-    let prepared = ready(scenes::find(&args.scene)?.scene(&Variant::default())?)?;
+    let variant = Variant::new(&args.variant, false);
+    let prepared = ready(scenes::find(&args.scene)?.scene(&variant)?)?;
     let picture = picture(&prepared);
     let bytes = match kind {
         "png" => svg_to_png(&picture, PNG_SCALE)?,
@@ -220,9 +221,11 @@ impl<'a> Sketch<'a> {
         let mut there: Vec<([f64; 2], String)> = Vec::new();
         for joint in self.joints() {
             let at = self.at(joint);
+            let clearance = if joint.clearance { " (clearance)" } else { "" };
+            let name = format!("{}{clearance}", joint.name);
             match there.iter_mut().find(|(other, _)| length(*other, at) < 1.0) {
-                Some((_, names)) => *names = format!("{names}, {}", joint.name),
-                None => there.push((at, joint.name.clone())),
+                Some((_, names)) => *names = format!("{names}, {name}"),
+                None => there.push((at, name)),
             }
         }
         for (at, names) in there {

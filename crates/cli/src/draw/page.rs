@@ -3,7 +3,7 @@
 use linkdyn_mechanisms::Skeleton;
 use nalgebra::Vector3;
 
-use super::shape::{corners, is_drawn, points};
+use super::shape::{axis, corners, is_drawn, points};
 use super::view::View;
 
 /// Width and height of a picture, and the margin in it that symbols and names need.
@@ -57,7 +57,7 @@ impl Page {
         best.map_or_else(|| Self::new(View::front(), skeleton), |(_, page)| page)
     }
 
-    /// How much is hidden: joints close to other joints, and to links that do not end there.
+    /// How much is hidden: joints close to other joints and to links that do not end there, ways of slides.
     fn crowding(&self, skeleton: &Skeleton) -> f64 {
         let mut joints: Vec<Vector3<f64>> = Vec::new();
         for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
@@ -73,6 +73,13 @@ impl Page {
         for (k, one) in joints.iter().enumerate() {
             for two in &joints[..k] {
                 crowding += near(length(self.place(*one), self.place(*two)));
+            }
+        }
+        // Slides whose way points to the eye are hidden as well.
+        for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
+            if let Some(way) = axis(&joint.joint) {
+                let [x, y, _] = self.direction(joint.frames[0].rotation * way);
+                crowding += 0.5 * (1.0 - f64::hypot(x, y));
             }
         }
         for link in 0..skeleton.links.len() {

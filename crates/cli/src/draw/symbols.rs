@@ -306,7 +306,9 @@ pub(super) fn joint(joint: &Joint, at: Point, along: impl Fn(Vector3<f64>) -> Sp
 
 /// The gap of a joint with clearance, as a ring about its symbol.
 pub(super) fn gap(at: Point) -> Circle {
-    disc(at, RADIUS + 6.0, "none").set("stroke-dasharray", "3 2")
+    disc(at, RADIUS + 9.0, "none")
+        .set("stroke", "#c2378d")
+        .set("stroke-dasharray", "4 3")
 }
 
 /// An arrow from a place.
