@@ -97,14 +97,17 @@ impl<'a> Sketch<'a> {
                 continue;
             }
             feet.push(foot);
-            let slide = joint
-                .filter(|joint| slides(&joint.joint))
-                .and_then(|joint| Some((joint, shape::axis(&joint.joint)?)));
-            symbols = symbols.add(match slide {
-                Some((joint, axis)) => symbols::bed(at, self.page.direction(joint.frames[0].rotation * axis)),
-                None => symbols::ground(at),
-            });
-            self.taken.discs.push(([at[0], at[1] + 14.0], 13.0));
+            let slide = joint.and_then(|joint| Some(joint.frames[0].rotation * shape::axis(&joint.joint)?));
+            match slide.and_then(|axis| symbols::bed(at, self.page.direction(axis))) {
+                Some((bed, edge)) => {
+                    symbols = symbols.add(bed);
+                    self.taken.lines.push(edge);
+                }
+                None => {
+                    symbols = symbols.add(symbols::ground(at));
+                    self.taken.discs.push(([at[0], at[1] + 14.0], 13.0));
+                }
+            }
         }
         if is_planar || feet.len() < 2 {
             return symbols;

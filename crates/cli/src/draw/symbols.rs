@@ -70,37 +70,36 @@ pub(super) fn ground([x, y]: Point) -> Group {
     hatched(Group::new().add(bracket), [x, foot], [1.0, 0.0], 15.0)
 }
 
-/// A line through `middle`, hatched on the side of the ground: below, or to the right of an upright one.
+/// A line through `middle`, hatched on the side of the ground.
 fn hatched(group: Group, middle: Point, along: Point, half: f64) -> Group {
-    let below = if along[0] < 0.0 {
-        [along[1], -along[0]]
-    } else {
-        [-along[1], along[0]]
-    };
-    let at = |a: f64, b: f64| [0, 1].map(|i| middle[i] + a * along[i] + b * below[i]);
-    let mut group = group.add(line(&[at(-half, 0.0), at(half, 0.0)], INK, 1.5));
+    let at = |k: f64| [middle[0] + k * along[0], middle[1] + k * along[1]];
+    let mut group = group.add(line(&[at(-half), at(half)], INK, 1.5));
     let mut from = -half + 3.0;
     while from <= half {
-        group = group.add(line(&[at(from, 0.0), at(from - 5.0, 5.0)], INK, 1.0));
+        group = group.add(line(&[at(from), aside(at(from - 5.0), along, 5.0)], INK, 1.0));
         from += 6.0;
     }
     group
 }
 
-/// The bed on the ground of what slides at a place, beyond the block on both sides; none where it points to the eye.
-pub(super) fn bed(at: Point, axis: Spot) -> Group {
+/// The bed on the ground of what slides at a place, beyond the block on both sides, and its edge; none where it points to the eye.
+pub(super) fn bed(at: Point, axis: Spot) -> Option<(Group, [Spot; 2])> {
     let size = f64::hypot(axis[0], axis[1]);
     if size < 0.1 {
-        return ground(at);
+        return None;
     }
     let along = [axis[0] / size, axis[1] / size];
-    let below = if along[0] < 0.0 {
-        [along[1], -along[0]]
-    } else {
-        [-along[1], along[0]]
-    };
-    let middle = [0, 1].map(|i| at[i] + (BLOCK[1] + 2.0) * below[i]);
-    hatched(Group::new(), middle, along, 2.4 * BLOCK[0] * size.max(0.5))
+    let middle = aside(at, along, BLOCK[1] + 2.0);
+    let half = 2.4 * BLOCK[0] * size.max(0.5);
+    let ends = [-half, half].map(|k| [middle[0] + k * along[0], middle[1] + k * along[1]]);
+    let edge = ends.map(|end| aside(end, along, 3.0)).map(|[x, y]| [x, y, 0.0]);
+    Some((hatched(Group::new(), middle, along, half), edge))
+}
+
+/// A place moved off a line to the side of the ground: below, or to the right of an upright one.
+fn aside([x, y]: Point, along: Point, way: f64) -> Point {
+    let side = if along[0] < 0.0 { -way } else { way };
+    [x - side * along[1], y + side * along[0]]
 }
 
 /// What the ground holds, so that it is seen as one; its edges.
