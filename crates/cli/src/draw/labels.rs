@@ -100,13 +100,18 @@ impl Taken {
             [-1.0, 0.0],
             [0.0, 1.0],
         ];
+        // Not beyond the edge of the page, if that is what keeps a long name from its place.
+        let within = |x: f64, k: usize| {
+            let low = EDGE + 1.0 + half[k];
+            x.max(low).min(SIZE[k] - low)
+        };
         let areas = [4.0, 9.0, 16.0].into_iter().flat_map(|gap| {
             ways.map(|way| Area {
-                middle: [0, 1].map(|k| at[k] + way[k] * (radius + gap) + side(way[k]) * half[k]),
+                middle: [0, 1].map(|k| within(at[k] + way[k] * (radius + gap) + side(way[k]) * half[k], k)),
                 half,
             })
         });
-        let area = self.best(areas, 10.0)?;
+        let area = self.best(areas, 16.0)?;
         Some(self.write(name, area, colour))
     }
 
