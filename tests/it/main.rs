@@ -11,6 +11,7 @@ mod architecture;
 mod assembly;
 mod baumgarte;
 mod budget;
+mod chosen_cuts;
 mod clearance;
 mod clearance_contact;
 mod clearance_joints;

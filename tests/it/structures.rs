@@ -52,10 +52,14 @@ fn check(name: &str, text: &str, serial: bool, loops: usize, redundant: usize) {
             let y = simulation.state_vector(&state);
             simulation.observe(row.t, &y, &mut other).expect("moves");
             let at = format!("{name}, {formulation:?}, t = {}", row.t);
-            let gap = difference(&row.a, &other.a);
-            assert!(gap < 1e-9, "{at}: accelerations {gap:e}");
-            let gap = difference(&row.multipliers, &other.multipliers);
-            assert!(gap < 1e-8, "{at}: multipliers {gap:e}");
+            // Against gravity's acceleration, or a newton, where all is still.
+            let gap = |one: &[f64], other: &[f64], unit: f64| {
+                difference(&[one, &[unit]].concat(), &[other, &[unit]].concat())
+            };
+            let accelerations = gap(&row.a, &other.a, 10.0);
+            assert!(accelerations < 1e-9, "{at}: accelerations {accelerations:e}");
+            let multipliers = gap(&row.multipliers, &other.multipliers, 1.0);
+            assert!(multipliers < 1e-8, "{at}: multipliers {multipliers:e}");
             let flat = |o: &Observation| -> Vec<f64> {
                 let both = o
                     .reactions
@@ -63,8 +67,8 @@ fn check(name: &str, text: &str, serial: bool, loops: usize, redundant: usize) {
                     .flat_map(|one| one.force.iter().chain(&one.torque).copied());
                 both.collect()
             };
-            let gap = difference(&flat(row), &flat(&other));
-            assert!(gap < 1e-8, "{at}: reactions {gap:e}");
+            let reactions = gap(&flat(row), &flat(&other), 1.0);
+            assert!(reactions < 1e-8, "{at}: reactions {reactions:e}");
         }
     }
 }
@@ -149,7 +153,7 @@ macro_rules! example {
 #[test]
 fn closed_serial_linkages_one_of_which_has_redundant_equations() {
     check("rsrrr", example!("rsrrr"), true, 1, 0);
-    check("bennett", example!("bennett"), true, 1, 2);
+    check("bennett", example!("bennett"), true, 1, 3);
     check("four-bar", example!("four_bar"), true, 1, 1);
 }
 
@@ -158,5 +162,5 @@ fn closed_trees_with_several_loops_and_with_redundant_ones() {
     check("squeezer", example!("andrews_squeezer"), false, 3, 3);
     check("governor", example!("flyball_governor"), false, 2, 2);
     check("platform", example!("stewart_platform"), false, 6, 0);
-    check("four-bars in a row", example!("n_four_bar"), false, 2, 2);
+    check("four-bars in a row", example!("n_four_bar"), false, 2, 6);
 }
