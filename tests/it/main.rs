@@ -52,6 +52,7 @@ mod reversed_cuts;
 mod rsrrr;
 mod rsup;
 mod scene_benchmarks;
+mod scene_bricard;
 mod scene_examples;
 mod scene_faults;
 mod scene_files;

@@ -46,7 +46,7 @@ impl Linkage {
 }
 
 /// Kind of a joint and of its clearance.
-fn described(joint: &Joint, clearance: Option<&Clearance>) -> String {
+pub(crate) fn described(joint: &Joint, clearance: Option<&Clearance>) -> String {
     match clearance {
         None => kind(joint).to_owned(),
         Some(clearance) => format!("{}, {} clearance", kind(joint), clearance.model.name()),
