@@ -9,6 +9,13 @@ impl Linkage {
     /// The tree of links from the ground, one a line behind the joint that carries it, then the cut joints. Links without a way to
     /// the ground are left out.
     pub fn outline(&self) -> String {
+        if let Some(chosen) = self.with_cuts_chosen() {
+            return chosen.outline_of_tree();
+        }
+        self.outline_of_tree()
+    }
+
+    fn outline_of_tree(&self) -> String {
         let mut text = "ground\n".to_owned();
         // A joint is drawn once, so that descriptions that are no tree end as well.
         let mut drawn = vec![false; self.joints.len()];
