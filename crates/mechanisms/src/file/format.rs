@@ -123,7 +123,8 @@ pub struct JointItem {
     pub friction: Option<FrictionItem>,
     /// Motion that its one coordinate is made to follow.
     pub prescribed: Option<PrescribedItem>,
-    /// Clearance of a revolute joint, which is cut then.
+    /// Clearance of a revolute or ball joint. The joint is cut then, unless it has `cut = false` or something on its coordinates: in the
+    /// tree it gets coordinates `JOINT.x`, `JOINT.y` and for a ball `JOINT.z`, with `length` also `JOINT.theta` and `JOINT.phi`.
     pub clearance: Option<ClearanceItem>,
     /// Stops at the ends of the way of its one coordinate.
     pub limit: Option<LimitItem>,
@@ -205,9 +206,9 @@ pub enum DriveItem {
         amplitude: f64,
         /// Frequency \[Hz\].
         frequency: f64,
-        /// Phase at t = 0 \[rad\]; zero unless given.
+        /// Phase at t = 0 \[rad\], or a text like `"30 deg"`; zero unless given.
         #[serde(default)]
-        phase: f64,
+        phase: Quantity,
     },
     /// A spline through points over time.
     Table {
@@ -271,7 +272,7 @@ pub struct RunItem {
     pub until: f64,
     /// Whether results list joint reactions; no unless given.
     pub reactions: bool,
-    /// Coordinate whose speed stands for the run; the first one unless given.
+    /// Coordinate whose speed stands for the run; that of the first joint that has one unless given.
     pub crank: Option<String>,
     /// Coordinate whose motion is the result, if one is.
     pub output: Option<String>,
