@@ -22,7 +22,7 @@ pub struct ClearanceItem {
     /// Which side has the hole; the predecessor unless given.
     #[serde(default = "predecessor")]
     pub bearing: Side,
-    /// Length of the bearing of a revolute joint \[m\], in which the pin may then tilt, with contact at both edges. Without it the axes
+    /// Length of the bearing of a revolute joint \[m\], in which the pin may then tilt, with contact at both edges. Unless given the axes
     /// stay parallel and nothing moves along them.
     pub length: Option<f64>,
     /// Normal force over penetration and its rate.

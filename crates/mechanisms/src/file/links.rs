@@ -45,6 +45,9 @@ impl Links {
                 .beam
                 .as_ref()
                 .and_then(|item| beam::add(name, item, linkage, faults));
+            if flexible.is_none() && item.beam.is_some() {
+                faults.leave_out(&["links", name, "beam"]);
+            }
             let place = match flexible {
                 Some(link) => (
                     link.elements.first().copied().unwrap_or(Linkage::GROUND),

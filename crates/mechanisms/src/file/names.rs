@@ -28,12 +28,11 @@ impl Names {
             any: faults.lacks_all(&["joints"]) || faults.lacks_all(&["links"]),
             ..Self::default()
         };
-        names.unread = file
-            .links
-            .keys()
-            .filter(|name| faults.lacks(&["links", name]))
-            .cloned()
-            .collect();
+        for (name, item) in file.links.iter().filter(|(name, _)| faults.lacks(&["links", name])) {
+            names.unread.push(name.clone());
+            let given = item.beam.iter().flat_map(|beam| &beam.coordinates).flatten();
+            names.unread.extend(given.cloned());
+        }
         for joint in &linkage.joints {
             let (beam, _) = joint.name.rsplit_once('.').unwrap_or((&joint.name, ""));
             for name in joint.coordinates() {

@@ -22,7 +22,7 @@ use std::collections::HashSet;
 pub struct LimitItem {
     /// Where the coordinate meets the lower stop \[rad, m\], angles also as texts like `"30 deg"`; none unless given.
     pub lower: Option<Quantity>,
-    /// Where it meets the upper stop; none unless given.
+    /// Where it meets the upper stop \[rad, m\]; none unless given.
     pub upper: Option<Quantity>,
     /// Force over penetration.
     pub contact: ContactItem,
@@ -58,19 +58,19 @@ pub enum AxesItem {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrutItem {
-    /// One end.
+    /// One end; the ground's origin unless given.
     #[serde(default)]
     pub from: MountItem,
-    /// The other end.
+    /// The other end; the ground's origin unless given.
     #[serde(default)]
     pub to: MountItem,
     /// Distance of the ends at which it is relaxed \[m\]; zero unless given.
     #[serde(default)]
     pub free_length: f64,
-    /// Stiffness \[N/m\].
+    /// Stiffness \[N/m\]; zero unless given.
     #[serde(default)]
     pub stiffness: f64,
-    /// Damping \[N s/m\].
+    /// Damping \[N s/m\]; zero unless given.
     #[serde(default)]
     pub damping: f64,
 }

@@ -15,13 +15,19 @@ pub(super) fn mend(schema: &Json, table: &mut DeTable<'_>, faults: &mut Faults<'
     Shape { schema, faults }.object(schema, table, 0, &[]);
 }
 
-/// Makes the descriptions of a schema, which are those of Rust's documentation, readable in editors: plain brackets, and a description
-/// of a kind of table at the key that chooses it.
+/// Makes the descriptions of a schema, which are those of Rust's documentation, readable in editors: plain brackets, no breaks of
+/// lines but between paragraphs, and a description of a kind of table at the key that chooses it.
 pub(super) fn describe(schema: &mut Json) {
     match schema {
         Json::Object(entries) => {
             if let Some(Json::String(text)) = entries.get_mut("description") {
-                *text = text.replace("\\[", "[").replace("\\]", "]");
+                let plain = text.replace("\\[", "[").replace("\\]", "]");
+                // Paragraphs in one line, but for those with formulas.
+                *text = if plain.contains("```") {
+                    plain
+                } else {
+                    plain.replace("\n\n", "\r").replace('\n', " ").replace('\r', "\n\n")
+                };
             }
             let text = entries.get("description").cloned();
             let properties = entries.get_mut("properties").and_then(Json::as_object_mut);
