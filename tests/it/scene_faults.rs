@@ -78,7 +78,7 @@ fn faults_of_shape_names_and_values_are_told_at_once() {
             (
                 "rise_time = 2",
                 "rise_time = -2",
-                "`joints.J11.drives[0]`: rise_time = -2 must be a finite positive number",
+                "`joints.J11.drives[0].ramp.rise_time`: rise_time = -2 must be a finite positive number",
             ),
             ("link = \"2,2\" }", "link = \"2,2x\" }", "did you mean `2,2`?"),
             ("held = [\"psi11\"]", "held = [\"psi1\"]", "did you mean `psi11`?"),
@@ -134,7 +134,7 @@ fn faults_of_what_sits_in_joints_are_told_although_the_joint_cannot_be_read() {
             (
                 "reference_speed = 9",
                 "reference_speed = 0",
-                "`joints.J11.drives[1]`: reference_speed = 0",
+                "`joints.J11.drives[1].resistance.reference_speed`: reference_speed = 0",
             ),
             (
                 "link = \"1,1\" }\ndrives",

@@ -40,7 +40,7 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
     for (k, spring) in springs.iter().enumerate() {
         if let Some((parameter, value, expected)) = spring.fault() {
             faults.add(
-                &["joints", name, "springs", &format!("[{k}]")],
+                &["joints", name, "springs", &format!("[{k}]"), key_of(parameter)],
                 format!("{parameter} = {value} must be {expected}"),
             );
         }
@@ -129,10 +129,31 @@ pub(super) fn drives(keys: &[&str], items: &[DriveItem], faults: &mut Faults<'_>
     for (k, drive) in drives.iter().enumerate() {
         if let Some((parameter, value, expected)) = drive.fault() {
             let message = format!("{parameter} = {value} must be {expected}");
-            faults.add(&[keys, &[&format!("[{k}]")]].concat(), message);
+            let (entry, word) = (format!("[{k}]"), kind_of_drive(&items[k]));
+            faults.add(&[keys, &[&entry, word, key_of(parameter)]].concat(), message);
         }
     }
     drives
+}
+
+/// The key at which a parameter is given.
+pub(super) fn key_of(parameter: &'static str) -> &'static str {
+    match parameter {
+        "node" | "nodes" | "value" => "points",
+        "coefficient" => "coefficients",
+        other => other,
+    }
+}
+
+fn kind_of_drive(item: &DriveItem) -> &'static str {
+    match item {
+        DriveItem::Ramp { .. } => "ramp",
+        DriveItem::Constant { .. } => "constant",
+        DriveItem::Harmonic { .. } => "harmonic",
+        DriveItem::Table { .. } => "table",
+        DriveItem::QuadraticResistance { .. } => "quadratic_resistance",
+        DriveItem::Resistance { .. } => "resistance",
+    }
 }
 
 fn drive(item: &DriveItem) -> Drive {

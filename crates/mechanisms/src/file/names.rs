@@ -45,14 +45,18 @@ impl Names {
     /// The names that the joints of a file give, without those in `cut`, if that was judged.
     pub fn add_joints(&mut self, file: &SceneFile, cut: Option<&[String]>, faults: &mut Faults<'_>) {
         for (name, item) in &file.joints {
+            let given = item.coordinates.as_deref();
             if cut.is_some_and(|cut| cut.contains(name)) {
+                // Refused already.
+                self.all.extend(given.into_iter().flatten().cloned());
                 continue;
             }
             self.any |= faults.lacks(&["joints", name, "coordinates"]);
             let keys = ["joints", name, "coordinates"];
-            let given = item.coordinates.as_deref();
             let new = if unread(name, faults) {
-                self.unread.push(name.clone());
+                if given.is_none() || item.clearance.is_some() {
+                    self.unread.push(name.clone());
+                }
                 given.map(<[String]>::to_vec).unwrap_or_default()
             } else {
                 let clearance = item.clearance.as_ref();
