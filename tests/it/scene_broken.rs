@@ -104,7 +104,11 @@ fn broken(text: &str, others: &[(String, String)], dice: &mut Dice) -> String {
         }
         // A line of another scene.
         8 => {
-            let lines: Vec<&str> = dice.one_of(others).map_or("", |(_, text)| text).split_inclusive('\n').collect();
+            let lines: Vec<&str> = dice
+                .one_of(others)
+                .map_or("", |(_, text)| text)
+                .split_inclusive('\n')
+                .collect();
             let line = dice.one_of(&lines).copied().unwrap_or_default();
             parts.insert(at, line.to_owned());
         }
@@ -178,7 +182,11 @@ fn a_thousand_broken_files_are_refused_or_read_and_never_panic_or_hang() {
     let (give, take) = mpsc::channel::<String>();
     let (answer, answers) = mpsc::channel();
     // Ends with the channel, when all has been tried.
-    thread::spawn(move || take.iter().map(|text| tried(&text)).try_for_each(|told| answer.send(told)));
+    thread::spawn(move || {
+        take.iter()
+            .map(|text| tried(&text))
+            .try_for_each(|told| answer.send(told))
+    });
     let mut dice = Dice(1);
     let scenes = scenes();
     let (mut refused, mut read, mut tries) = (0, 0, 0);
@@ -197,5 +205,8 @@ fn a_thousand_broken_files_are_refused_or_read_and_never_panic_or_hang() {
         }
         tries += 1;
     }
-    assert!(refused >= BROKEN && read >= BROKEN / 20, "{refused} refused and {read} read of {tries}");
+    assert!(
+        refused >= BROKEN && read >= BROKEN / 20,
+        "{refused} refused and {read} read of {tries}"
+    );
 }

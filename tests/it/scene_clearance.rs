@@ -77,7 +77,12 @@ fn all_models_cut_and_in_the_tree_are_the_same_linkage_as_in_rust() {
     };
     for (kind, joint, length, model) in [
         ("revolute", revolute, "", ClearanceModel::Planar),
-        ("revolute", revolute, "length = 0.02", ClearanceModel::Spatial { length: 0.02 }),
+        (
+            "revolute",
+            revolute,
+            "length = 0.02",
+            ClearanceModel::Spatial { length: 0.02 },
+        ),
         ("spherical", Joint::Spherical, "", ClearanceModel::Spherical),
         ("spherical_zyx", Joint::SphericalZyx, "", ClearanceModel::Spherical),
     ] {
@@ -111,7 +116,11 @@ fn assert_runs(scene: Scene, until: f64) -> Finished {
     assert!(run.contacts.len() > 1, "{}", run.contacts.len());
     let first = run.rows[0].energy_balance();
     for row in &run.rows {
-        assert!((row.energy_balance() - first).abs() < 1e-8, "{} {first}", row.energy_balance());
+        assert!(
+            (row.energy_balance() - first).abs() < 1e-8,
+            "{} {first}",
+            row.energy_balance()
+        );
     }
     run
 }
@@ -152,7 +161,10 @@ fn what_sits_on_the_turn_keeps_a_joint_with_clearance_in_the_tree() {
     let scene = read(&text);
     assert_eq!(scene.crank, "turn");
     let outline = scene.linkage.outline();
-    assert_eq!(outline, "ground\n  J (revolute, driven, sprung, planar clearance) - rod\n");
+    assert_eq!(
+        outline,
+        "ground\n  J (revolute, driven, sprung, planar clearance) - rod\n"
+    );
     let mechanism = scene.linkage.build().expect("a linkage");
     let names: Vec<_> = mechanism.coordinate_names().collect();
     assert_eq!(names, ["J.x", "J.y", "turn"]);
@@ -168,8 +180,16 @@ fn what_does_not_go_with_clearance_is_told_with_place_and_remedy() {
         }
     };
     let ball = text("spherical", Some(false), "length = 0.02", "");
-    told(&ball, &["`joints.J.clearance.length`: goes with the bearing of a revolute joint; a ball has none, so leave it out"]);
-    for (kind, name) in [("prismatic", "prismatic"), ("universal", "universal"), ("fixed", "fixed"), ("free", "free")] {
+    told(
+        &ball,
+        &["`joints.J.clearance.length`: goes with the bearing of a revolute joint; a ball has none, so leave it out"],
+    );
+    for (kind, name) in [
+        ("prismatic", "prismatic"),
+        ("universal", "universal"),
+        ("fixed", "fixed"),
+        ("free", "free"),
+    ] {
         let found = faults(&text(kind, Some(false), "", ""));
         let words = format!("`revolute`, `spherical` and `spherical_zyx` joints; this one is {name}");
         assert!(found.iter().any(|fault| fault.contains(&words)), "{found:#?}");
@@ -177,12 +197,21 @@ fn what_does_not_go_with_clearance_is_told_with_place_and_remedy() {
     let friction = "friction = { viscous = { per_speed = 1 }, journal = { spacing = 1, surface_a = { diameter = 1, coefficient = 0 }, \
                     surface_b = { diameter = 1, coefficient = 0 }, face = { diameter = 1, coefficient = 0 } } }";
     let rubbing = text("revolute", Some(false), "", friction);
-    told(&rubbing, &["`joints.J.friction`: needs the reaction of an ideal joint; with `clearance` give that a `friction`"]);
+    told(
+        &rubbing,
+        &["`joints.J.friction`: needs the reaction of an ideal joint; with `clearance` give that a `friction`"],
+    );
     // Cut unless told, which leaves the rod without a hold.
     let open = text("revolute", Some(false), "", "").replace("cut = false", "");
-    told(&open, &["`links.rod`: no chain of joints that are not cut leads from it to the ground; write `cut = false`"]);
+    told(
+        &open,
+        &["`links.rod`: no chain of joints that are not cut leads from it to the ground; write `cut = false`"],
+    );
     let turned = text("revolute", Some(false), "", "").replace("successor.link", "predecessor.link");
-    told(&turned, &["which a joint with clearance cannot carry; exchange predecessor and successor"]);
+    told(
+        &turned,
+        &["which a joint with clearance cannot carry; exchange predecessor and successor"],
+    );
     // An offset that a pin does not have, and one of a joint that is cut.
     let along = text("revolute", Some(false), "", "") + "[start]\npositions = { \"J.z\" = 1e-4 }\n";
     told(&along, &["there is no coordinate `J.z`; did you mean `J.y`?"]);
@@ -192,7 +221,10 @@ fn what_does_not_go_with_clearance_is_told_with_place_and_remedy() {
     let edges = text("revolute", Some(false), "length = 0.02", "")
         + "[links.two]\nmass = 1\n[joints.J1]\nkind = \"spherical\"\ncut = false\nsuccessor.link = \"two\"\n[joints.J1.clearance]\n\
            bearing_radius = 0.005\njournal_radius = 0.004\ncontact = { power = { stiffness = 1e9 } }\n";
-    told(&edges, &["`joints.J1`: the name `J1` of a contact point is used twice; give the joint another name"]);
+    told(
+        &edges,
+        &["`joints.J1`: the name `J1` of a contact point is used twice; give the joint another name"],
+    );
     // A name that clearance gives.
     let twice = text("revolute", Some(false), "", "")
         + "[links.two]\nmass = 1\n[joints.K]\nkind = \"revolute\"\nsuccessor.link = \"two\"\ncoordinates = [\"J.x\"]\n";

@@ -82,7 +82,11 @@ fn faults_of_shape_names_and_values_are_told_at_once() {
             ),
             ("link = \"2,2\" }", "link = \"2,2x\" }", "did you mean `2,2`?"),
             ("held = [\"psi11\"]", "held = [\"psi1\"]", "did you mean `psi11`?"),
-            ("until = 5", "until = nan", "`run.until`: NaN s must be a finite positive number"),
+            (
+                "until = 5",
+                "until = nan",
+                "`run.until`: NaN s must be a finite positive number",
+            ),
             (
                 "reactions = true",
                 "reactions = 1",

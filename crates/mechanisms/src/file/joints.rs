@@ -34,7 +34,12 @@ impl Read<'_> {
 
 /// Adds all joints, in the order of the file. Which of them are cut is judged only where all could be read. The result are the names of
 /// those that are, where that was judged.
-pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Option<Vec<String>> {
+pub(super) fn add(
+    file: &SceneFile,
+    links: &Links,
+    linkage: &mut Linkage,
+    faults: &mut Faults<'_>,
+) -> Option<Vec<String>> {
     let mut read = Vec::new();
     let inner = linkage.joints.len();
     for (name, item) in &file.joints {
@@ -253,7 +258,8 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
     let second = axis("second_axis", item.second_axis, second);
     let lead = item.lead.unwrap_or_default();
     if item.lead.is_some() && (item.kind != Kind::Screw || !lead.is_finite()) {
-        let message = format!("{lead}: a screw has a lead, a finite number of metres a turn, and no other joint has one");
+        let message =
+            format!("{lead}: a screw has a lead, a finite number of metres a turn, and no other joint has one");
         faults.add(&["joints", name, "lead"], message);
     } else if item.lead.is_none() && item.kind == Kind::Screw {
         faults.add(&["joints", name], "a screw needs its `lead`, in metres a turn");

@@ -69,7 +69,8 @@ impl Links {
             links.known.insert(name.clone(), place);
             for (new, _) in &linkage.links[first..] {
                 if !names.insert(new.clone()) {
-                    let message = format!("the name `{new}` is used twice: elements of a beam are called `BEAM,0` and so on");
+                    let message =
+                        format!("the name `{new}` is used twice: elements of a beam are called `BEAM,0` and so on");
                     faults.add(&["links", name], message);
                 }
             }

@@ -45,7 +45,10 @@ fn run(run: &RunItem, faults: &mut Faults<'_>) {
             faults.add(&["run", key], format!("{value}{unit} must be a finite positive number"));
         }
     }
-    if run.every.is_some_and(|every| run.until / every > MOST_ROWS as f64) {
+    if run
+        .every
+        .is_some_and(|every| every > 0.0 && run.until / every > MOST_ROWS as f64)
+    {
         faults.add(
             &["run", "every"],
             format!("makes more than {MOST_ROWS} rows; give more time between two of them"),
