@@ -577,7 +577,11 @@ fn limits_and_prescribed_motion_act_on_the_turn() {
             let coefficients = coefficients.clone();
             linkage.prescribe(handle, PrescribedMotion::Polynomial { coefficients });
         });
-        let (start, _) = guided.assemble(&Start::default()).expect("closed");
+        let aside = Start {
+            speeds: vec![("J.x".into(), 0.5)],
+            ..Start::default()
+        };
+        let (start, _) = guided.assemble(&aside).expect("closed");
         let run = go(&mut begin(&guided, &start), 0.02, 0.001);
         assert!(!run.contacts.is_empty());
         for row in &run.rows {

@@ -2,7 +2,7 @@
 
 use crate::linkage::{LinkHandle, Linkage, Mount};
 use crate::mechanism::Mechanism;
-use crate::outline::described;
+use crate::outline::{described, described_cut};
 use linkdyn_kinematics::{Joint, Pose, Positions};
 use nalgebra::Vector3;
 
@@ -70,7 +70,7 @@ impl Linkage {
         let frame = |link: LinkHandle| link.0.map_or_else(Pose::identity, |k| links[k].frame);
         let on = |mount: &Mount| frame(mount.link) * mount.pose;
         let carrying = self.joints.iter().map(|j| {
-            let kind = described(&j.joint, j.clearance.as_ref());
+            let kind = described(j);
             (
                 &j.name,
                 j.joint,
@@ -80,12 +80,7 @@ impl Linkage {
             )
         });
         let cut = self.cuts.iter().map(|c| {
-            let kind = described(&c.joint, c.clearance.as_ref());
-            let kind = if c.rows.is_some() {
-                "its own equations".into()
-            } else {
-                kind
-            };
+            let kind = described_cut(c);
             (
                 &c.name,
                 c.joint,
