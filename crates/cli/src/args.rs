@@ -27,7 +27,7 @@ pub enum Command {
     Analyse(AnalyseArgs),
     /// Say all that is wrong with a scene file, else draw its tree and count its freedoms
     Check(CheckArgs),
-    /// Draw a scene at its start, as SVG or PNG
+    /// Draw a scene at its start, as SVG or PNG: links in colours, joints by their symbols, the ground hatched
     Draw(DrawArgs),
     /// Write a commented scene file to begin with
     New(NewArgs),
@@ -249,18 +249,21 @@ pub enum AnalysisArg {
 /// Options of `linkdyn check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scene file, or name of a built-in scene
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
 }
 
 /// Options of `linkdyn draw`.
 #[derive(Debug, Args)]
 pub struct DrawArgs {
-    /// Scene file, or name of a built-in scene
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
-    /// Picture to write, which ends in .svg or .png
+    /// Picture to write, which ends in .svg or .png; one that is there is replaced
     #[arg(short, long, value_name = "PICTURE")]
     pub out: PathBuf,
+    /// What to switch in the scene.
+    #[command(flatten)]
+    pub variant: VariantArgs,
 }
 
 /// Options of `linkdyn new`.
@@ -268,6 +271,9 @@ pub struct DrawArgs {
 pub struct NewArgs {
     /// File to write, which must not be there yet
     pub file: PathBuf,
+    /// Example to begin with (see `linkdyn scenes`) [default: four_bar]
+    #[arg(long, value_name = "NAME")]
+    pub from: Option<String>,
 }
 
 /// Options of `linkdyn scenes`.

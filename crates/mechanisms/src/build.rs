@@ -184,6 +184,7 @@ impl Linkage {
             carriers: Vec::new(),
             frames: vec![None; self.links.len()],
         };
+        let mut hangs = vec![false; self.joints.len()];
         for (k, joint) in self.joints.iter().enumerate() {
             let carried = |other: &&JointItem| other.successor.link == joint.successor.link;
             if let Some(first) = self.joints[..k].iter().find(carried) {
@@ -200,7 +201,7 @@ impl Linkage {
                     None => true,
                     Some(link) => placed.frames[link].is_some(),
                 };
-                reached && !placed.order.contains(k)
+                reached && !hangs[*k]
             });
             let Some((k, item)) = next else { break };
             let mut base = placed.attachment(&Mount {
@@ -227,6 +228,7 @@ impl Linkage {
                     });
                 }
             }
+            hangs[k] = true;
             placed.order.push(k);
             placed.nodes.push(node);
         }

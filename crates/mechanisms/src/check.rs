@@ -35,15 +35,7 @@ impl Linkage {
             }
         }
         seen.clear();
-        let joints = self.joints.iter().map(|joint| (&joint.name, &joint.clearance));
-        let cuts = self.cuts.iter().map(|cut| (&cut.name, &cut.clearance));
-        let with_clearance = joints
-            .chain(cuts)
-            .filter_map(|(name, clearance)| Some((name, clearance.as_ref()?)));
-        let with_limit = self.joints.iter().filter_map(|j| Some((&j.name, j.limit.as_ref()?)));
-        let in_limits = with_limit.flat_map(|(joint, limit)| limit.point_names(joint));
-        let in_clearances = with_clearance.flat_map(|(joint, clearance)| clearance.model.point_names(joint));
-        for name in in_limits.chain(in_clearances) {
+        for (_, name) in self.contact_points() {
             if !seen.insert(name.clone()) {
                 return Err(BuildError::DuplicateName { name });
             }
@@ -56,6 +48,21 @@ impl Linkage {
             }
         }
         Ok(())
+    }
+
+    /// Names of the contact points of limits and clearances, each behind its joint's.
+    pub(crate) fn contact_points(&self) -> impl Iterator<Item = (&str, String)> {
+        let joints = self.joints.iter().map(|joint| (joint.name.as_str(), &joint.clearance));
+        let cuts = self.cuts.iter().map(|cut| (cut.name.as_str(), &cut.clearance));
+        let with_clearance = joints
+            .chain(cuts)
+            .filter_map(|(name, clearance)| Some((name, clearance.as_ref()?)));
+        let with_limit = self.joints.iter();
+        let with_limit = with_limit.filter_map(|joint| Some((joint.name.as_str(), joint.limit.as_ref()?)));
+        let in_limits = with_limit.flat_map(|(joint, limit)| limit.point_names(joint).map(move |name| (joint, name)));
+        let in_clearances = with_clearance
+            .flat_map(|(joint, clearance)| clearance.model.point_names(joint).map(move |name| (joint, name)));
+        in_limits.chain(in_clearances)
     }
 
     pub(crate) fn check_items(&self) -> Result<(), BuildError> {

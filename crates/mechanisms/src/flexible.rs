@@ -79,7 +79,6 @@ impl Linkage {
     /// spring-damping element r and, while nothing is bent, the axes of that frame. Twist belongs to the turn about the axis `along`
     /// which the beam runs, bending to the two others: the section's first and second axis are the next two in cyclic order.
     pub fn flexible_link(&mut self, name: &str, beam: &Beam, along: Along) -> FlexibleLink {
-        self.flexible = true;
         let direction = along.direction();
         let mut elements: Vec<LinkHandle> = Vec::new();
         let mut joints = Vec::new();
@@ -106,6 +105,7 @@ impl Linkage {
         }
         let length = beam.elements.last().map_or(0.0, |last| last.start + last.length);
         let last = elements.last().copied().unwrap_or(Linkage::GROUND);
+        self.beams.push((name.to_owned(), elements.clone()));
         FlexibleLink {
             end: Mount::at(last, (direction * (length - origin)).into()),
             elements,

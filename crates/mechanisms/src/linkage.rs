@@ -1,6 +1,6 @@
 //! The builder: links, joints, cut joints and the loads on them by name, in any order.
 
-use crate::clearance::Clearance;
+use crate::clearance::{Clearance, carried};
 use crate::drive::Drive;
 use crate::joint_friction::JointFriction;
 use crate::limit::Limit;
@@ -96,9 +96,9 @@ pub struct Linkage {
     /// Whether a joint was named by a handle of another linkage.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) foreign: bool,
-    /// Whether a link is flexible.
+    /// Flexible links: the name of each and its elements.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) flexible: bool,
+    pub(crate) beams: Vec<(String, Vec<LinkHandle>)>,
     /// Drift terms, if any.
     pub baumgarte: Option<Baumgarte>,
     /// Formulation of the equations of motion.
@@ -150,7 +150,7 @@ impl Linkage {
             struts: Vec::new(),
             loads: Vec::new(),
             foreign: false,
-            flexible: false,
+            beams: Vec::new(),
             baumgarte: None,
             formulation: Formulation::default(),
             reaction_solver: ReactionSolver::default(),
@@ -330,7 +330,7 @@ impl Linkage {
 
     /// Whether a link is flexible, which makes the equations of motion stiff.
     pub fn is_flexible(&self) -> bool {
-        self.flexible
+        !self.beams.is_empty()
     }
 
     /// Name of a link, for messages.
@@ -350,11 +350,7 @@ pub(crate) fn qualified(joint: &str, local: &[&str]) -> Vec<String> {
 impl JointItem {
     /// Names of its coordinates, those that clearance adds included.
     pub(crate) fn coordinates(&self) -> Vec<String> {
-        let own = match &self.coordinate_names {
-            Some(names) => names.clone(),
-            None => qualified(&self.name, self.own_names()),
-        };
-        self.with_offsets(own)
+        carried::names(&self.name, &self.joint, self.model(), self.coordinate_names.as_deref())
     }
 
     /// Speeds have the names of their coordinates wherever they are their rates.
@@ -362,7 +358,8 @@ impl JointItem {
         if self.joint.coordinates() == self.joint.speeds() {
             self.coordinates()
         } else {
-            self.with_offsets(qualified(&self.name, self.joint.speed_names()))
+            let own = qualified(&self.name, self.joint.speed_names());
+            carried::names(&self.name, &self.joint, self.model(), Some(&own))
         }
     }
 

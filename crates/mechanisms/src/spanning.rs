@@ -2,6 +2,8 @@
 
 use crate::linkage::{CutItem, JointItem, Linkage};
 use linkdyn_kinematics::Joint;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A joint between two links, as far as the choice of cuts sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,36 +40,51 @@ pub enum Role {
 pub fn spanning_tree(links: usize, joints: &[Edge]) -> Vec<Role> {
     let mut roles = vec![Role::Cut; joints.len()];
     let mut depths: Vec<Option<usize>> = vec![None; links];
-    // Links that a joint shall carry that cannot but carry its successor.
-    let bound = |link: usize, k: usize| {
-        let one_way = |(other, joint): (usize, &Edge)| {
-            other != k && !joint.backwards && joint.cut == Some(false) && joint.successor == Some(link)
-        };
-        joints.iter().enumerate().any(one_way)
-    };
+    let mut ends: Vec<Vec<usize>> = vec![Vec::new(); links];
+    // How many joints shall carry a link that cannot but carry their successor.
+    let mut bound = vec![0; links];
+    let one_way = |joint: &Edge| !joint.backwards && joint.cut == Some(false);
+    for (k, joint) in joints.iter().enumerate() {
+        for link in [joint.predecessor, joint.successor].into_iter().flatten() {
+            if let Some(ends) = ends.get_mut(link) {
+                ends.push(k);
+            }
+        }
+        if let Some(bound) = joint.successor.and_then(|link| bound.get_mut(link)) {
+            *bound += usize::from(one_way(joint));
+        }
+    }
     let depth = |depths: &[Option<usize>], link: Option<usize>| match link {
         None => Some(0),
         Some(k) => depths.get(k).copied().flatten(),
     };
-    loop {
-        let next = joints.iter().enumerate().filter(|(_, joint)| joint.cut != Some(true));
-        let next = next.filter_map(|(k, joint)| {
-            let before = depth(&depths, joint.predecessor);
-            let behind = depth(&depths, joint.successor);
-            let (role, depth, link) = match (before, behind) {
-                (Some(depth), None) => (Role::Carries, depth, joint.successor?),
-                (None, Some(depth)) => (Role::CarriesBackwards, depth, joint.predecessor?),
-                _ => return None,
-            };
-            let last = bound(link, k) || (role == Role::CarriesBackwards && !joint.backwards);
-            (link < links).then_some(((last, joint.cut.is_none(), joint.freedoms, depth, k), role, link))
-        });
-        let Some(((.., depth, k), role, link)) = next.min_by_key(|&(rank, ..)| rank) else {
-            return roles;
+    // A joint that could hang a link on what hangs already, the first one to be taken the least; its rank ends with its own number.
+    let candidate = |depths: &[Option<usize>], k: usize| {
+        let joint = joints.get(k).filter(|joint| joint.cut != Some(true))?;
+        let (role, depth, link) = match (depth(depths, joint.predecessor), depth(depths, joint.successor)) {
+            (Some(depth), None) => (Role::Carries, depth, joint.successor?),
+            (None, Some(depth)) => (Role::CarriesBackwards, depth, joint.predecessor?),
+            _ => return None,
+        };
+        let own = usize::from(one_way(joint) && joint.successor == Some(link));
+        let last = *bound.get(link)? > own || (role == Role::CarriesBackwards && !joint.backwards);
+        Some(((last, joint.cut.is_none(), joint.freedoms, depth, k), role, link))
+    };
+    let mut open: BinaryHeap<_> = (0..joints.len())
+        .filter_map(|k| candidate(&depths, k))
+        .map(|(rank, ..)| Reverse(rank))
+        .collect();
+    while let Some(Reverse((.., k))) = open.pop() {
+        // Both its links may hang by now.
+        let Some(((.., depth, _), role, link)) = candidate(&depths, k) else {
+            continue;
         };
         roles[k] = role;
         depths[link] = Some(depth + 1);
+        let further = ends[link].iter().filter_map(|&k| candidate(&depths, k));
+        open.extend(further.map(|(rank, ..)| Reverse(rank)));
     }
+    roles
 }
 
 /// The same joint with exchanged sides and coordinates that mean the same, where there is one, and whether their order is the opposite.

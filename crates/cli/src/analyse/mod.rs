@@ -51,7 +51,11 @@ pub(crate) fn mobility_tables(prepared: &Prepared) -> Result<Vec<Table>, Analysi
     counts.entry("freedoms here", Cell::count(found.freedoms as u64), "");
     counts.entry("freedoms that last", Cell::count(found.finite as u64), "");
     counts.entry("freedoms for any dimensions", Cell::count(found.general as u64), "");
-    counts.entry("independent coordinates", Cell::text(found.independent.join(", ")), "");
+    if found.prescribed > 0 {
+        counts.entry("prescribed motions", Cell::count(found.prescribed as u64), "");
+        counts.entry("freedoms left to forces", Cell::count(found.left as u64), "");
+    }
+    counts.entry("independent coordinates", Cell::text(shortened(&found.independent)), "");
     counts.entry("smallest pivot over the first", Cell::number(found.weakest), "");
     counts.entry("largest pivot that counts as zero", Cell::number(found.rest), "");
     let mut rows = Table::new("redundant", &[("redundant equation", ""), ("follows from", "")]);
@@ -65,6 +69,15 @@ pub(crate) fn mobility_tables(prepared: &Prepared) -> Result<Vec<Table>, Analysi
         true => vec![counts],
         false => vec![counts, rows],
     })
+}
+
+/// Names in one line; of many the first ones.
+fn shortened(names: &[String]) -> String {
+    const MOST: usize = 12;
+    match names.len().checked_sub(MOST) {
+        None | Some(0) => names.join(", "),
+        Some(more) => format!("{} and {more} more", names[..MOST].join(", ")),
+    }
 }
 
 fn combination(redundant: &Redundant) -> String {

@@ -435,7 +435,8 @@ pub(super) fn check(mechanism: &Mechanism, q: &[f64], v: Option<&[f64]>) -> Resu
     // Loops alone: what is asked may be of another time than the one at which prescribed motions are there.
     let (residual, rate) = violation(mechanism, q, v);
     let fastest = v.unwrap_or(&[]).iter().fold(1.0, |s, x| f64::max(s, x.abs()));
-    let worst = residual.max(rate / fastest);
+    // At rest loops stay closed, but prescribed motions may have to go on.
+    let worst = v.map_or(residual, |_| residual.max(rate / fastest));
     if worst.is_nan() || worst > OFF_THE_LOOP {
         return Err(AnalysisError::Open {
             residual: worst,

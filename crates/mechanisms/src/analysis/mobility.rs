@@ -65,6 +65,11 @@ pub struct Mobility {
     /// Speeds less rank with the loops opened by moving all coordinates: what other dimensions of the same joints would have. It is
     /// smaller than `finite` where mobility rests on the dimensions, as with Bennett's and Bricard's loops; a planar loop stays planar.
     pub general: usize,
+    /// Prescribed motions.
+    pub prescribed: usize,
+    /// What is left of `freedoms` to forces while the prescribed motions are followed. Where `freedoms` less `prescribed` is smaller, the
+    /// loops tie motions to each other that are all prescribed.
+    pub left: usize,
     /// A choice of independent speeds at this position, as many as `freedoms`.
     pub independent: Vec<String>,
     /// Rows that depend on others. Which rows of a dependent set are named is a matter of pivots; the combinations tell the set.
@@ -126,6 +131,14 @@ pub fn mobility(mechanism: &Mechanism, q: &[f64]) -> Result<Mobility, AnalysisEr
         most = most.max(rank(gradient(&opened)));
     }
 
+    let mut followed = vec![false; n];
+    for guided in system.guided() {
+        followed[guided.speed] = true;
+    }
+    let prescribed = system.guided().len();
+    // Where speeds are given, their columns say nothing about the others.
+    let others = Elimination::new(here.clone(), |_, speed| !followed[speed]).rank();
+
     let smallest = [chosen.weakest, chosen.rest];
     if let Some(value) = smallest.iter().find(|x| !x.is_finite()) {
         return Err(number("a pivot of the closure gradient", *value, "a finite number"));
@@ -138,6 +151,8 @@ pub fn mobility(mechanism: &Mechanism, q: &[f64]) -> Result<Mobility, AnalysisEr
         freedoms: n - chosen.rank(),
         finite,
         general: n - most,
+        prescribed,
+        left: n - prescribed - others,
         independent: independent
             .iter()
             .map(|&speed| mechanism.speeds[speed].clone())

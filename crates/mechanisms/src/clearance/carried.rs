@@ -1,7 +1,7 @@
 //! What clearance makes of a joint of the tree: slides before it, and tilts behind its turn.
 
 use super::ClearanceModel;
-use crate::linkage::JointItem;
+use crate::linkage::{JointItem, qualified};
 use linkdyn_kinematics::Joint;
 use nalgebra::{Unit, Vector3};
 
@@ -11,45 +11,45 @@ impl JointItem {
         let directions: [Unit<Vector3<f64>>; 3] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
         directions
             .into_iter()
-            .take(self.offset_names().len())
+            .take(offset_names(self.model()).len())
             .map(|axis| Joint::Prismatic { axis })
     }
 
     /// Whether the axis of the joint may tilt.
     pub(crate) fn tilts(&self) -> bool {
-        matches!(self.model(), Some(ClearanceModel::Spatial { .. }))
+        tilts(self.model())
     }
 
     /// The model of its clearance, if the joint may have one.
-    fn model(&self) -> Option<ClearanceModel> {
+    pub(crate) fn model(&self) -> Option<ClearanceModel> {
         let model = self.clearance.as_ref().map(|clearance| clearance.model);
         model.filter(|model| model.fits(&self.joint))
     }
+}
 
-    fn offset_names(&self) -> &'static [&'static str] {
-        match self.model() {
-            None => &[],
-            Some(ClearanceModel::Planar | ClearanceModel::Spatial { .. }) => &["x", "y"],
-            Some(ClearanceModel::Spherical) => &["x", "y", "z"],
-        }
-    }
+fn tilts(model: Option<ClearanceModel>) -> bool {
+    matches!(model, Some(ClearanceModel::Spatial { .. }))
+}
 
-    /// Names of the coordinates of the joint itself where none are given.
-    pub(crate) fn own_names(&self) -> &'static [&'static str] {
-        match (&self.joint, &self.clearance) {
-            (Joint::Spherical, Some(_)) => &["qw", "qx", "qy", "qz"],
-            (joint, _) => joint.coordinate_names(),
-        }
+fn offset_names(model: Option<ClearanceModel>) -> &'static [&'static str] {
+    match model {
+        None => &[],
+        Some(ClearanceModel::Planar | ClearanceModel::Spatial { .. }) => &["x", "y"],
+        Some(ClearanceModel::Spherical) => &["x", "y", "z"],
     }
+}
 
-    /// The joint's own names between those of its slides and of its tilts.
-    pub(crate) fn with_offsets(&self, own: Vec<String>) -> Vec<String> {
-        let local = |name: &&str| format!("{}.{name}", self.name);
-        let mut names: Vec<String> = self.offset_names().iter().map(local).collect();
-        names.extend(own);
-        if self.tilts() {
-            names.extend(["theta", "phi"].iter().map(local));
-        }
-        names
-    }
+/// Names of all coordinates or speeds of a joint of the tree with such a clearance: its `own`, those of its coordinates unless given,
+/// between those of its slides and of its tilts.
+pub(crate) fn names(joint: &str, kind: &Joint, model: Option<ClearanceModel>, own: Option<&[String]>) -> Vec<String> {
+    let local = |names: &'static [&'static str]| names.iter().map(move |name| format!("{joint}.{name}"));
+    let own = own.map_or_else(
+        || match (kind, model) {
+            (Joint::Spherical, Some(_)) => qualified(joint, &["qw", "qx", "qy", "qz"]),
+            _ => qualified(joint, kind.coordinate_names()),
+        },
+        <[String]>::to_vec,
+    );
+    let tilts: &[&str] = if tilts(model) { &["theta", "phi"] } else { &[] };
+    local(offset_names(model)).chain(own).chain(local(tilts)).collect()
 }

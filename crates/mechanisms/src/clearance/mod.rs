@@ -1,7 +1,7 @@
 //! Clearance in a joint: a journal that touches its bearing, or a ball its socket, as a load with states of its own.
 
 mod bristles;
-mod carried;
+pub(crate) mod carried;
 mod load;
 
 use linkdyn_contact::{ContactLaw, Fit, ForcePoint, NormalModel, ParameterError as ContactError};

@@ -28,7 +28,7 @@ pub struct BeamItem {
     /// Relaxation time \[s\]: every damping is this times its stiffness; zero unless given.
     #[serde(default)]
     pub relaxation_time: f64,
-    /// Number of spring-damping elements, 1 to 500; there is one rigid element more.
+    /// Number of spring-damping elements, 1 to 500, also for all beams together; there is one rigid element more.
     #[schemars(range(min = 1, max = 500))]
     pub elements: u16,
     /// Names of the three turns about z, y and x in each spring-damping element, whose number is put behind with a dot: `NAME.1.psi` and

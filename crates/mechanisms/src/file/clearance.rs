@@ -1,25 +1,29 @@
-//! Clearance of a scene file's cut joints: its format, and how it is read.
+//! Clearance of a scene file's joints: its format, and how it is read.
 
 use super::contact::ContactItem;
 use super::fault::Faults;
+use super::format::Kind;
+use super::joints::any_of_kind;
 use crate::clearance::{Clearance, ClearanceModel, Side};
+use crate::outline;
 use linkdyn_contact::{Fit, ForcePoint};
 use linkdyn_friction::{Bristle, BristleModel, BristleStart, ElastoPlastic, LuGre};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Clearance of a revolute joint, which is cut: a journal (pin) in a larger bearing (hole).
+/// Clearance of a revolute joint, a journal (pin) in a larger bearing (hole), or of a ball joint, a ball in a larger socket.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClearanceItem {
-    /// Radius of the hole \[m\].
+    /// Radius of the hole or the socket \[m\].
     pub bearing_radius: f64,
-    /// Radius of the pin \[m\].
+    /// Radius of the pin or the ball \[m\], below that of the hole.
     pub journal_radius: f64,
     /// Which side has the hole; the predecessor unless given.
     #[serde(default = "predecessor")]
     pub bearing: Side,
-    /// Length of the bearing \[m\], in which the pin may then tilt, with contact at both edges. Without it the axes stay parallel.
+    /// Length of the bearing of a revolute joint \[m\], in which the pin may then tilt, with contact at both edges. Unless given the axes
+    /// stay parallel and nothing moves along them.
     pub length: Option<f64>,
     /// Normal force over penetration and its rate.
     pub contact: ContactItem,
@@ -54,8 +58,20 @@ pub enum BristleItem {
     },
 }
 
-/// The clearance of the joint `name`; none where it cannot be.
-pub(super) fn read(name: &str, item: &ClearanceItem, faults: &mut Faults<'_>) -> Option<Clearance> {
+impl ClearanceItem {
+    /// How the journal may move in a joint of a kind, if the joint may have clearance.
+    pub(super) fn model(&self, kind: Kind) -> Option<ClearanceModel> {
+        match (kind, self.length) {
+            (Kind::Revolute, None) => Some(ClearanceModel::Planar),
+            (Kind::Revolute, Some(length)) => Some(ClearanceModel::Spatial { length }),
+            (Kind::Spherical | Kind::SphericalZyx, _) => Some(ClearanceModel::Spherical),
+            _ => None,
+        }
+    }
+}
+
+/// The clearance of the joint `name`, whose kind is given if it is known; none where it cannot be.
+pub(super) fn read(name: &str, kind: Option<Kind>, item: &ClearanceItem, faults: &mut Faults<'_>) -> Option<Clearance> {
     let key = |key| ["joints", name, "clearance", key];
     let fit = Fit::new(item.bearing_radius, item.journal_radius);
     let fit = fit
@@ -77,17 +93,27 @@ pub(super) fn read(name: &str, item: &ClearanceItem, faults: &mut Faults<'_>) ->
     if let Some(Err(error)) = friction.as_ref().map(Bristle::validate) {
         faults.add(&key("friction"), error.to_string());
     }
-    let model = match item.length {
-        None => ClearanceModel::Planar,
-        Some(length) => ClearanceModel::Spatial { length },
-    };
     if let Some(length) = item.length.filter(|length| !(length.is_finite() && *length > 0.0)) {
         faults.add(&key("length"), format!("{length} m must be a finite positive number"));
+    }
+    let kind = kind?;
+    let model = item.model(kind);
+    match model {
+        None => {
+            let kind = outline::kind(&any_of_kind(kind));
+            let message = format!("goes with `revolute`, `spherical` and `spherical_zyx` joints; this one is {kind}");
+            faults.add(&["joints", name, "clearance"], message);
+        }
+        Some(ClearanceModel::Spherical) if item.length.is_some() => {
+            let message = "goes with the bearing of a revolute joint; a ball has none, so leave it out";
+            faults.add(&key("length"), message);
+        }
+        Some(_) => {}
     }
     Some(Clearance {
         fit: fit?,
         bearing: item.bearing,
-        model,
+        model: model?,
         law: law?,
         friction,
         bristle_start: item.bristle_start,

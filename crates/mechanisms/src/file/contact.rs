@@ -14,7 +14,7 @@ pub enum ContactItem {
     Power {
         /// Stiffness K \[N/m^n, N m/rad^n\].
         stiffness: f64,
-        /// Exponent n, at least 1; 1.5 unless given.
+        /// Exponent n, at least 1 \[-\]; 1.5 unless given.
         #[serde(default = "hertz")]
         exponent: f64,
         /// How energy is lost; not at all unless given.

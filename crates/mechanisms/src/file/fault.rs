@@ -112,7 +112,7 @@ impl<'a> Faults<'a> {
     }
 
     /// A fault of the value to which the keys lead, at the last of them that is there; none where something in that value was left
-    /// out, which may be all that is wrong with it.
+    /// out, which may be all that is wrong with it, or where it belongs to what stands in for something.
     pub fn add(&mut self, keys: &[&str], message: impl Into<String>) {
         let (mut byte, mut value) = (0, Some(&self.mended));
         for &key in keys {
@@ -134,7 +134,8 @@ impl<'a> Faults<'a> {
             byte = next.as_ref().map_or(byte, |(span, _)| span.start);
             value = next.map(|(_, value)| value);
         }
-        if !self.lacks(keys) {
+        let stands_in = |path: &Vec<String>| path.len() < keys.len() && path.iter().zip(keys).all(|(a, b)| a == b);
+        if !self.lacks(keys) && !self.left_out.iter().any(stands_in) {
             self.at(byte, keys, message);
         }
     }

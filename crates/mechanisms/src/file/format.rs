@@ -16,7 +16,7 @@ use serde::Deserialize;
 pub struct SceneFile {
     /// Version of the format: 1.
     pub format: i64,
-    /// One line for listings.
+    /// One line for listings; empty unless given.
     #[serde(default)]
     pub summary: String,
     /// Gravity \[m/s^2\] in axes of the ground; along -z unless given.
@@ -26,19 +26,19 @@ pub struct SceneFile {
     pub links: IndexMap<String, LinkItem>,
     /// The joints by name.
     pub joints: IndexMap<String, JointItem>,
-    /// Forces on points of links by name.
+    /// Forces on points of links by name; none unless given. Forces, moments and struts need names of their own.
     #[serde(default)]
     pub forces: IndexMap<String, PointLoadItem>,
-    /// Moments on links by name.
+    /// Moments on links by name; none unless given.
     #[serde(default)]
     pub moments: IndexMap<String, PointLoadItem>,
-    /// Springs with dampers between two points by name.
+    /// Springs with dampers between two points by name; none unless given.
     #[serde(default)]
     pub struts: IndexMap<String, StrutItem>,
-    /// Where the linkage starts.
+    /// Where the linkage starts; all coordinates and speeds zero unless given.
     #[serde(default)]
     pub start: StartItem,
-    /// How it is run.
+    /// How it is run; for a second unless given.
     #[serde(default)]
     pub run: RunItem,
 }
@@ -51,7 +51,7 @@ fn earth() -> [f64; 3] {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinkItem {
-    /// Mass \[kg\]; 0 for a link that only carries others.
+    /// Mass \[kg\], with `centre` and `inertia`, where no shape is given; 0 for a link that only carries others.
     pub mass: Option<f64>,
     /// Centre of mass in the link's frame \[m\]; its origin unless given.
     pub centre: Option<[f64; 3]>,
@@ -62,7 +62,7 @@ pub struct LinkItem {
     /// A solid box with edges along the axes of the link's frame, in place of mass, centre and inertia.
     #[serde(rename = "box")]
     pub cuboid: Option<CuboidItem>,
-    /// A flexible beam from the origin of the link's frame.
+    /// A flexible beam from the origin of the link's frame, in place of all others.
     pub beam: Option<BeamItem>,
 }
 
@@ -101,31 +101,32 @@ pub struct JointItem {
     pub axis: Option<[f64; 3]>,
     /// Second axis of a universal joint, y unless given; first slide of a planar one, x unless given.
     pub second_axis: Option<[f64; 3]>,
-    /// Lead of a screw: slide of its successor for a whole turn \[m\], negative for a left-hand thread.
+    /// Lead of a screw, where it must be given: slide of its successor for a whole turn \[m\], negative for a left-hand thread.
     pub lead: Option<f64>,
-    /// One side; coordinates say how the successor moves against it.
+    /// One side, the ground unless given; coordinates say how the successor moves against it.
     #[serde(default)]
     pub predecessor: MountItem,
-    /// The other side.
+    /// The other side, the ground unless given.
     #[serde(default)]
     pub successor: MountItem,
     /// Whether the joint closes a loop by equations; chosen unless given: joints with few freedoms carry links.
     pub cut: Option<bool>,
-    /// Names of its coordinates; the joint's own name for a single one.
+    /// Names of its coordinates; unless given a single one has the joint's name, several are `JOINT.psi` and so on.
     pub coordinates: Option<Vec<String>>,
-    /// Drives and resistances on its one coordinate; they add up.
+    /// Drives and resistances on its one coordinate, which add up; none unless given.
     #[serde(default)]
     pub drives: Vec<DriveItem>,
-    /// Springs with dampers, one for each coordinate.
+    /// Springs with dampers, one for each coordinate; none unless given.
     #[serde(default)]
     pub springs: Vec<SpringItem>,
-    /// Friction of a revolute or prismatic joint that carries a link.
+    /// Friction of a revolute or prismatic joint that carries a link; none unless given.
     pub friction: Option<FrictionItem>,
-    /// Motion that its one coordinate is made to follow.
+    /// Motion that its one coordinate is made to follow, which takes a freedom away; none unless given.
     pub prescribed: Option<PrescribedItem>,
-    /// Clearance of a revolute joint, which is cut then.
+    /// Clearance of a revolute or ball joint; none unless given. The joint is cut then, unless it has `cut = false` or something on its coordinates: in the
+    /// tree it gets coordinates `JOINT.x`, `JOINT.y` and for a ball `JOINT.z`, with `length` also `JOINT.theta` and `JOINT.phi`.
     pub clearance: Option<ClearanceItem>,
-    /// Stops at the ends of the way of its one coordinate.
+    /// Stops at the ends of the way of its one coordinate; none unless given.
     pub limit: Option<LimitItem>,
 }
 
@@ -205,15 +206,16 @@ pub enum DriveItem {
         amplitude: f64,
         /// Frequency \[Hz\].
         frequency: f64,
-        /// Phase at t = 0 \[rad\]; zero unless given.
+        /// Phase at t = 0 \[rad\], or a text like `"30 deg"`; zero unless given.
         #[serde(default)]
-        phase: f64,
+        phase: Quantity,
     },
     /// A spline through points over time.
     Table {
         /// Time \[s\] and torque or force \[N m, N\] of each point, times rising; constant before the first and behind the last.
         points: Vec<[f64; 2]>,
-        /// Whether values between two points stay between theirs, with one continuous derivative; else two, and it may overshoot.
+        /// Whether values between two points stay between theirs, with one continuous derivative. Unless given there are two, and the
+        /// spline may overshoot.
         #[serde(default)]
         monotone: bool,
     },
@@ -237,10 +239,10 @@ pub enum DriveItem {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringItem {
-    /// Stiffness \[N m/rad, N/m\].
+    /// Stiffness \[N m/rad, N/m\]; zero unless given.
     #[serde(default)]
     pub stiffness: f64,
-    /// Damping \[N m s/rad, N s/m\].
+    /// Damping \[N m s/rad, N s/m\]; zero unless given.
     #[serde(default)]
     pub damping: f64,
     /// Coordinate at which it is relaxed \[rad, m\]; zero unless given.
@@ -255,10 +257,10 @@ pub struct StartItem {
     /// Guessed coordinates \[rad, m\], angles also as texts like `"30 deg"`; zero unless given.
     #[serde(default)]
     pub positions: IndexMap<String, Quantity>,
-    /// Coordinates that keep their guessed value and speed while the loops are closed.
+    /// Coordinates that keep their guessed value and speed while the loops are closed; none unless given.
     #[serde(default)]
     pub held: Vec<String>,
-    /// Speeds \[rad/s, m/s\]; the others follow from the loops.
+    /// Speeds \[rad/s, m/s\]; unless given they follow from the loops, as small as can be.
     #[serde(default)]
     pub speeds: IndexMap<String, f64>,
 }
@@ -271,19 +273,20 @@ pub struct RunItem {
     pub until: f64,
     /// Whether results list joint reactions; no unless given.
     pub reactions: bool,
-    /// Coordinate whose speed stands for the run; the first one unless given.
+    /// Coordinate whose speed stands for the run; that of the first joint that has one unless given.
     pub crank: Option<String>,
-    /// Coordinate whose motion is the result, if one is.
+    /// Coordinate whose motion is the result; none unless given.
     pub output: Option<String>,
     /// Time between two rows of the results \[s\]; 1/500 of the run unless given.
     pub every: Option<f64>,
     /// Integration method; `auto` unless given.
     pub method: Option<MethodItem>,
-    /// Relative tolerance of methods with error control; with clearance the absolute one alone counts.
+    /// Relative tolerance of methods with error control \[-\]. Unless given 1e-12, with beams and methods for stiff scenes
+    /// 1e-9, with clearance a millionth of it; there the absolute one alone counts.
     pub rtol: Option<f64>,
-    /// Absolute tolerance of methods with error control; that of `rtol` unless given.
+    /// Absolute tolerance of methods with error control \[SI units of each coordinate and speed\]; that of `rtol` unless given.
     pub atol: Option<f64>,
-    /// Fixed step of `rk4` and `newmark` \[s\].
+    /// Fixed step of `rk4` and `newmark` \[s\]; 1e-4 unless given.
     pub step: Option<f64>,
 }
 

@@ -14,21 +14,21 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionItem {
-    /// Rises to the full coefficient by `1 - exp(-steepness |v|/reference_speed)`.
+    /// Rises to the full coefficient by `1 - exp(-steepness |v|/reference_speed)`; none of it unless given.
     pub exponential: Option<Exponential>,
-    /// Straight through zero up to the reference speed, then full.
+    /// Straight through zero up to the reference speed, then full; none of it unless given.
     pub piecewise_linear: Option<PiecewiseLinear>,
-    /// `tanh(v/reference_speed)`.
+    /// `tanh(v/reference_speed)`; none of it unless given.
     pub hyperbolic_tangent: Option<HyperbolicTangent>,
-    /// One cubic arc up to the reference speed, then full.
+    /// One cubic arc up to the reference speed, then full; none of it unless given.
     pub cubic: Option<Cubic>,
-    /// A static peak above the full coefficient.
+    /// A static peak above the full coefficient; none of it unless given.
     pub stribeck: Option<Stribeck>,
-    /// In proportion to the speed.
+    /// In proportion to the speed; none of it unless given.
     pub viscous: Option<Viscous>,
-    /// The bearing of a revolute joint: two journals and a face.
+    /// The bearing, where the joint is revolute: two journals and a face.
     pub journal: Option<JournalBearing>,
-    /// The guide of a prismatic joint: two pads and a key.
+    /// The guide, where the joint is prismatic: two pads and a key.
     pub pad_guide: Option<PadGuide>,
 }
 

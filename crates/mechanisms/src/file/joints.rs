@@ -25,11 +25,23 @@ struct Read<'f> {
     clearance: Option<Clearance>,
 }
 
+impl Read<'_> {
+    /// See [`backwards`]; coordinates that clearance adds are those of the successor's frame in the predecessor's.
+    fn backwards(&self) -> Option<(Joint, bool)> {
+        backwards(self.joint).filter(|_| self.clearance.is_none())
+    }
+}
+
 /// Adds all joints, in the order of the file. Which of them are cut is judged only where all could be read. The result are the names of
-/// those that are.
-pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults: &mut Faults<'_>) -> Vec<String> {
+/// those that are, where that was judged.
+pub(super) fn add(
+    file: &SceneFile,
+    links: &Links,
+    linkage: &mut Linkage,
+    faults: &mut Faults<'_>,
+) -> Option<Vec<String>> {
     let mut read = Vec::new();
-    let mut coordinates = HashSet::new();
+    let inner = linkage.joints.len();
     for (name, item) in &file.joints {
         let mut joint = if unread(name, faults) {
             None
@@ -46,23 +58,16 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
             joint = None;
         }
         let sitting = loads::read(name, item, faults);
-        let clearance = item
-            .clearance
-            .as_ref()
-            .and_then(|clearance| clearance::read(name, clearance, faults));
-        if item.clearance.is_some() && !unread(name, faults) && item.kind != Kind::Revolute {
-            let message = "goes with revolute joints only";
-            faults.add(&["joints", name, "clearance"], message);
+        let kind = (!unread(name, faults)).then_some(item.kind);
+        let clearance = item.clearance.as_ref();
+        let clearance = clearance.and_then(|clearance| clearance::read(name, kind, clearance, faults));
+        if item.clearance.is_some() && item.friction.is_some() {
+            let message = "needs the reaction of an ideal joint; with `clearance` give that a `friction`";
+            faults.add(&["joints", name, "friction"], message);
         }
-        if item.clearance.is_some() && item.cut == Some(false) {
-            let message = "a joint with clearance is cut; leave `cut` out";
-            faults.add(&["joints", name, "cut"], message);
-        }
-        for coordinate in item.coordinates.iter().flatten() {
-            if !coordinates.insert(coordinate) {
-                let message = format!("the name `{coordinate}` is used twice");
-                faults.add(&["joints", name, "coordinates"], message);
-            }
+        if linkage.joints[..inner].iter().any(|joint| joint.name == *name) {
+            let message = format!("the name `{name}` is used twice: it is that of a joint in a beam");
+            faults.add(&["joints", name], message);
         }
         if let (Some(joint), Some(predecessor), Some(successor)) = (joint, predecessor, successor) {
             read.push(Read {
@@ -77,10 +82,10 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
         }
     }
     if read.len() < file.joints.len() || faults.lacks(&["joints"]) || faults.lacks_all(&["links"]) {
-        return Vec::new();
+        return None;
     }
     // The joints in beams, which stand in the linkage already, carry as they are.
-    let inner = linkage.joints.iter().map(|joint| Edge {
+    let carrying = linkage.joints.iter().map(|joint| Edge {
         predecessor: joint.predecessor.link.0,
         successor: joint.successor.link.0,
         freedoms: joint.joint.speeds(),
@@ -88,23 +93,25 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
         backwards: false,
     });
     let outer = read.iter().map(|read| {
-        let told = read.item.cut.or(sits_on_coordinates(read.item).map(|_| false));
+        let item = read.item;
+        let told = item.cut.or(sits_on_coordinates(item).map(|_| false));
         Edge {
             predecessor: read.predecessor.link.0,
             successor: read.successor.link.0,
             freedoms: read.joint.speeds(),
-            cut: if read.item.clearance.is_some() {
-                Some(true)
-            } else {
-                told
-            },
-            backwards: backwards(read.joint).is_some(),
+            cut: told.or(item.clearance.is_some().then_some(true)),
+            backwards: read.backwards().is_some(),
         }
     });
-    let edges: Vec<Edge> = inner.chain(outer).collect();
+    let edges: Vec<Edge> = carrying.chain(outer).collect();
     let mut roles = spanning_tree(linkage.links.len(), &edges);
-    connected(links, &edges, &roles, faults);
-    let inner = linkage.joints.len();
+    let by_clearance = |read: &&Read<'_>| read.item.clearance.is_some() && read.item.cut.is_none();
+    let loose = read.iter().filter(by_clearance);
+    let loose: HashSet<usize> = loose
+        .flat_map(|read| [read.predecessor.link.0, read.successor.link.0])
+        .flatten()
+        .collect();
+    connected(links, &edges, &roles, &loose, faults);
     for (joint, _) in linkage
         .joints
         .iter()
@@ -122,7 +129,7 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
         let (one, two) = (read.predecessor, read.successor);
         match role {
             Role::Cut => {
-                if item.cut == Some(false) && item.clearance.is_none() {
+                if item.cut == Some(false) {
                     faults.add(
                         &["joints", name, "cut"],
                         "both links are carried by other joints; leave `cut` out or cut another joint",
@@ -143,8 +150,11 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
             Role::Carries => {
                 let joint = linkage.joint(name, read.joint, one, two);
                 read.sitting.put(joint, linkage);
+                if let Some(clearance) = read.clearance {
+                    linkage.clearance(joint, clearance);
+                }
             }
-            Role::CarriesBackwards => match backwards(read.joint) {
+            Role::CarriesBackwards => match read.backwards() {
                 Some((kind, exchanged)) => {
                     let joint = linkage.joint(name, kind, two, one);
                     let mut sitting = read.sitting;
@@ -154,18 +164,24 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
                     sitting.put(joint, linkage);
                 }
                 None => {
-                    let message = "hangs nearer to the ground than the predecessor, which joints of this kind cannot carry; exchange \
-                                   predecessor and successor";
+                    let what = if read.clearance.is_some() {
+                        "a joint with clearance"
+                    } else {
+                        "joints of this kind"
+                    };
+                    let message = format!(
+                        "hangs nearer to the ground than the predecessor, which {what} cannot carry; exchange predecessor and successor"
+                    );
                     faults.add(&["joints", name, "successor"], message);
                 }
             },
         }
     }
-    cut
+    Some(cut)
 }
 
-/// Refuses links that hang on nothing.
-fn connected(links: &Links, edges: &[Edge], roles: &[Role], faults: &mut Faults<'_>) {
+/// Refuses links that hang on nothing; those in `loose` have a joint that is cut for its clearance alone.
+fn connected(links: &Links, edges: &[Edge], roles: &[Role], loose: &HashSet<usize>, faults: &mut Faults<'_>) {
     let carried = edges.iter().zip(roles).filter_map(|(edge, role)| match role {
         Role::Carries => edge.successor,
         Role::CarriesBackwards => edge.predecessor,
@@ -173,13 +189,26 @@ fn connected(links: &Links, edges: &[Edge], roles: &[Role], faults: &mut Faults<
     });
     let carried: HashSet<usize> = carried.collect();
     for name in links.names() {
-        if links
-            .find(name)
-            .and_then(|link| link.0)
-            .is_some_and(|link| !carried.contains(&link))
-        {
+        let hangs = |link: usize| carried.contains(&link);
+        if let Some(link) = links.find(name).and_then(|link| link.0).filter(|link| !hangs(*link)) {
             let message = "no chain of joints that are not cut leads from it to the ground";
-            faults.add(&["links", name], message);
+            let hint = if loose.contains(&link) {
+                "; write `cut = false` where a joint with clearance shall carry a link"
+            } else {
+                ""
+            };
+            faults.add(&["links", name], format!("{message}{hint}"));
+        }
+    }
+}
+
+/// Refuses names of contact points that are used twice: `A1` is one of a joint `A` with spatial clearance, and that of a joint `A1`.
+pub(super) fn contact_names(linkage: &Linkage, faults: &mut Faults<'_>) {
+    let mut seen = HashSet::new();
+    for (joint, name) in linkage.contact_points() {
+        if !seen.insert(name.clone()) {
+            let message = format!("the name `{name}` of a contact point is used twice; give the joint another name");
+            faults.add(&["joints", joint], message);
         }
     }
 }
@@ -189,7 +218,7 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
     let there = [
         (!item.drives.is_empty(), "drives"),
         (!item.springs.is_empty(), "springs"),
-        (item.friction.is_some(), "friction"),
+        (item.friction.is_some() && item.clearance.is_none(), "friction"),
         (item.limit.is_some(), "limit"),
         (item.coordinates.is_some(), "coordinates"),
         (item.prescribed.is_some(), "prescribed"),
@@ -210,18 +239,15 @@ fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint>
     let (first, second) = default_axes(item.kind);
     let first = axis("axis", item.axis, first);
     let second = axis("second_axis", item.second_axis, second);
-    match item.lead {
-        Some(lead) if item.kind != Kind::Screw || !lead.is_finite() => {
-            let message =
-                format!("{lead}: a screw has a lead, a finite number of metres a turn, and no other joint has one");
-            faults.add(&["joints", name, "lead"], message);
-        }
-        None if item.kind == Kind::Screw => {
-            faults.add(&["joints", name], "a screw needs its `lead`, in metres a turn");
-        }
-        _ => {}
+    let lead = item.lead.unwrap_or_default();
+    if item.lead.is_some() && (item.kind != Kind::Screw || !lead.is_finite()) {
+        let message =
+            format!("{lead}: a screw has a lead, a finite number of metres a turn, and no other joint has one");
+        faults.add(&["joints", name, "lead"], message);
+    } else if item.lead.is_none() && item.kind == Kind::Screw {
+        faults.add(&["joints", name], "a screw needs its `lead`, in metres a turn");
     }
-    let joint = of_kind(item.kind, first?, second?, item.lead.unwrap_or_default());
+    let joint = of_kind(item.kind, first?, second?, if lead.is_finite() { lead } else { 0.0 });
     let no_axis = matches!(
         item.kind,
         Kind::Fixed | Kind::Spherical | Kind::SphericalZyx | Kind::Free

@@ -8,6 +8,11 @@ use indexmap::IndexMap;
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_kinematics::Pose;
 use nalgebra::{Matrix3, Vector3};
+use std::collections::HashSet;
+
+/// How many spring-damping elements all beams of a file may have together, which is what one may have: matrices grow with the square
+/// of it, and a short text shall not ask for more memory than there is.
+const MOST_ELEMENTS: u32 = 500;
 
 /// The links of a file on their linkage.
 pub(super) struct Links {
@@ -24,7 +29,9 @@ impl Links {
             known: IndexMap::new(),
             straight: Vec::new(),
         };
+        let (mut names, mut elements) = (HashSet::new(), 0);
         for (name, item) in &file.links {
+            let first = linkage.links.len();
             if name == "ground" {
                 let message = "the ground is there already; give the link another name";
                 faults.add(&["links", name], message);
@@ -38,6 +45,9 @@ impl Links {
                 .beam
                 .as_ref()
                 .and_then(|item| beam::add(name, item, linkage, faults));
+            if flexible.is_none() && item.beam.is_some() {
+                faults.leave_out(&["links", name, "beam"]);
+            }
             let place = match flexible {
                 Some(link) => (
                     link.elements.first().copied().unwrap_or(Linkage::GROUND),
@@ -57,6 +67,19 @@ impl Links {
                 links.straight.extend(turns);
             }
             links.known.insert(name.clone(), place);
+            for (new, _) in &linkage.links[first..] {
+                if !names.insert(new.clone()) {
+                    let message =
+                        format!("the name `{new}` is used twice: elements of a beam are called `BEAM,0` and so on");
+                    faults.add(&["links", name], message);
+                }
+            }
+            let before = elements;
+            elements += item.beam.as_ref().map_or(0, |beam| u32::from(beam.elements));
+            if elements > MOST_ELEMENTS && before <= MOST_ELEMENTS {
+                let message = format!("makes {elements} elements in all beams up to here, more than {MOST_ELEMENTS}");
+                faults.add(&["links", name, "beam", "elements"], message);
+            }
         }
         links
     }

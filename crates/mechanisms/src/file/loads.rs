@@ -30,15 +30,7 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
     if !unread(name, faults) {
         numbers(name, item, faults);
     }
-    let drives: Vec<Drive> = item.drives.iter().map(drive).collect();
-    for (k, drive) in drives.iter().enumerate() {
-        if let Some((parameter, value, expected)) = drive.fault() {
-            faults.add(
-                &["joints", name, "drives", &format!("[{k}]")],
-                format!("{parameter} = {value} must be {expected}"),
-            );
-        }
-    }
+    let drives = drives(&["joints", name, "drives"], &item.drives, faults);
     let springs = item.springs.iter().map(|spring| Spring {
         stiffness: spring.stiffness,
         damping: spring.damping,
@@ -48,7 +40,7 @@ pub(super) fn read(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Sit
     for (k, spring) in springs.iter().enumerate() {
         if let Some((parameter, value, expected)) = spring.fault() {
             faults.add(
-                &["joints", name, "springs", &format!("[{k}]")],
+                &["joints", name, "springs", &format!("[{k}]"), key_of(parameter)],
                 format!("{parameter} = {value} must be {expected}"),
             );
         }
@@ -131,7 +123,40 @@ impl Sitting {
     }
 }
 
-pub(super) fn drive(item: &DriveItem) -> Drive {
+/// The drives to which `keys` lead.
+pub(super) fn drives(keys: &[&str], items: &[DriveItem], faults: &mut Faults<'_>) -> Vec<Drive> {
+    let drives: Vec<Drive> = items.iter().map(drive).collect();
+    for (k, drive) in drives.iter().enumerate() {
+        if let Some((parameter, value, expected)) = drive.fault() {
+            let message = format!("{parameter} = {value} must be {expected}");
+            let (entry, word) = (format!("[{k}]"), kind_of_drive(&items[k]));
+            faults.add(&[keys, &[&entry, word, key_of(parameter)]].concat(), message);
+        }
+    }
+    drives
+}
+
+/// The key at which a parameter is given.
+pub(super) fn key_of(parameter: &'static str) -> &'static str {
+    match parameter {
+        "node" | "nodes" | "value" => "points",
+        "coefficient" => "coefficients",
+        other => other,
+    }
+}
+
+fn kind_of_drive(item: &DriveItem) -> &'static str {
+    match item {
+        DriveItem::Ramp { .. } => "ramp",
+        DriveItem::Constant { .. } => "constant",
+        DriveItem::Harmonic { .. } => "harmonic",
+        DriveItem::Table { .. } => "table",
+        DriveItem::QuadraticResistance { .. } => "quadratic_resistance",
+        DriveItem::Resistance { .. } => "resistance",
+    }
+}
+
+fn drive(item: &DriveItem) -> Drive {
     match *item {
         DriveItem::Ramp { torque, rise_time } => Drive::Ramp { torque, rise_time },
         DriveItem::Constant { torque } => Drive::Constant { torque },
@@ -142,7 +167,7 @@ pub(super) fn drive(item: &DriveItem) -> Drive {
         } => Drive::Harmonic {
             amplitude,
             frequency,
-            phase,
+            phase: phase.0,
         },
         DriveItem::Table { ref points, monotone } => {
             let nodes: Vec<(f64, f64)> = points.iter().map(|&[t, value]| (t, value)).collect();

@@ -21,6 +21,7 @@
 mod beam;
 mod clearance;
 mod contact;
+mod examples;
 mod fault;
 mod format;
 mod friction;
@@ -37,6 +38,7 @@ mod start;
 pub use beam::{BeamItem, SectionItem};
 pub use clearance::{BristleItem, ClearanceItem};
 pub use contact::ContactItem;
+pub use examples::EXAMPLES;
 pub use fault::{Fault, SceneFileError};
 pub use format::*;
 pub use friction::FrictionItem;
@@ -51,6 +53,7 @@ use fault::Faults;
 use links::Links;
 use names::Names;
 use serde::Deserialize;
+use std::sync::LazyLock;
 use toml::Spanned;
 use toml::de::{DeTable, Deserializer};
 
@@ -59,8 +62,15 @@ pub const TEMPLATE: &str = include_str!("../../scenes/four_bar.toml");
 
 /// The JSON Schema of scene files, for editors.
 pub fn schema() -> serde_json::Value {
-    schemars::schema_for!(SceneFile).to_value()
+    SCHEMA.clone()
 }
+
+/// Made once, for each file that is read is held against it.
+static SCHEMA: LazyLock<serde_json::Value> = LazyLock::new(|| {
+    let mut schema = schemars::schema_for!(SceneFile).to_value();
+    shape::describe(&mut schema);
+    schema
+});
 
 /// The scene of a scene file's text, called `name`. Joints that the file leaves open are cut or carry links by
 /// [`spanning_tree`](crate::spanning_tree); those with drives, springs, friction or named coordinates carry.
@@ -78,7 +88,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         return Err(faults.result());
     }
     let mut mended = table.into_inner();
-    shape::mend(&schema(), &mut mended, &mut faults);
+    shape::mend(&SCHEMA, &mut mended, &mut faults);
     faults.look_up_in(mended.clone());
     let file = match SceneFile::deserialize(Deserializer::from(Spanned::new(0..0, mended))) {
         Ok(file) => file,
@@ -96,9 +106,10 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
     }
     let mut linkage = Linkage::new(file.gravity);
     let links = Links::add(&file, &mut linkage, &mut faults);
-    let mut names = Names::of_beams(&file, &linkage, &faults);
+    let mut names = Names::of_beams(&file, &linkage, &mut faults);
     let cut = joints::add(&file, &links, &mut linkage, &mut faults);
-    names.add_joints(&file, &cut, &faults);
+    names.add_joints(&file, cut.as_deref(), &mut faults);
+    joints::contact_names(&linkage, &mut faults);
     points::add(&file, &links, &mut linkage, &mut faults);
     start::check(&file, &names, &mut faults);
     if faults.none()
@@ -110,7 +121,6 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         return Err(faults.result());
     }
     let settings = start::settings(&file.run);
-    let first = linkage.joints.iter().flat_map(|joint| joint.coordinates()).next();
     let positions = file.start.positions.into_iter();
     Ok(Scene {
         name: name.to_owned(),
@@ -123,7 +133,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, SceneFileError> {
         },
         until: file.run.until,
         reactions: file.run.reactions,
-        crank: file.run.crank.or(first).unwrap_or_default(),
+        crank: file.run.crank.or(names.first).unwrap_or_default(),
         output: file.run.output,
         settings,
     })

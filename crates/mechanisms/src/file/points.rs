@@ -5,12 +5,13 @@ use super::fault::Faults;
 use super::format::{DriveItem, MountItem, SceneFile};
 use super::joints::mount;
 use super::links::Links;
-use super::loads::drive;
+use super::loads;
 use super::quantity::Quantity;
 use crate::limit::Limit;
 use crate::linkage::Linkage;
 use crate::point_load::{Axes, PointLoad};
 use crate::strut::Strut;
+use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::HashSet;
@@ -21,7 +22,7 @@ use std::collections::HashSet;
 pub struct LimitItem {
     /// Where the coordinate meets the lower stop \[rad, m\], angles also as texts like `"30 deg"`; none unless given.
     pub lower: Option<Quantity>,
-    /// Where it meets the upper stop; none unless given.
+    /// Where it meets the upper stop \[rad, m\]; none unless given.
     pub upper: Option<Quantity>,
     /// Force over penetration.
     pub contact: ContactItem,
@@ -57,19 +58,19 @@ pub enum AxesItem {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrutItem {
-    /// One end.
+    /// One end; the ground's origin unless given.
     #[serde(default)]
     pub from: MountItem,
-    /// The other end.
+    /// The other end; the ground's origin unless given.
     #[serde(default)]
     pub to: MountItem,
     /// Distance of the ends at which it is relaxed \[m\]; zero unless given.
     #[serde(default)]
     pub free_length: f64,
-    /// Stiffness \[N/m\].
+    /// Stiffness \[N/m\]; zero unless given.
     #[serde(default)]
     pub stiffness: f64,
-    /// Damping \[N s/m\].
+    /// Damping \[N s/m\]; zero unless given.
     #[serde(default)]
     pub damping: f64,
 }
@@ -102,20 +103,26 @@ pub(super) fn add(file: &SceneFile, links: &Links, linkage: &mut Linkage, faults
 }
 
 fn point_load(links: &Links, keys: &[&str], item: &PointLoadItem, faults: &mut Faults<'_>) -> Option<PointLoad> {
-    let at = mount(links, &[keys, &["at"]].concat(), &item.at, faults);
-    let load = PointLoad {
+    let below = |key| [keys, &[key]].concat();
+    let at = mount(links, &below("at"), &item.at, faults);
+    let drives = loads::drives(&below("drives"), &item.drives, faults);
+    if at.is_some_and(|at| at.link == Linkage::GROUND) {
+        faults.add(&below("at"), "is on the ground, where it does nothing; give a `link`");
+    }
+    let length = Vector3::from(item.direction).norm();
+    if !(length.is_finite() && length > 0.0) {
+        let message = format!("its length {length} must be a finite positive number");
+        faults.add(&below("direction"), message);
+    }
+    Some(PointLoad {
         at: at?,
         direction: item.direction,
         axes: match item.axes {
             AxesItem::Ground => Axes::Ground,
             AxesItem::Link => Axes::Mount,
         },
-        drives: item.drives.iter().map(drive).collect(),
-    };
-    if let Some((parameter, value, expected)) = load.fault() {
-        faults.add(keys, format!("{parameter} = {value} must be {expected}"));
-    }
-    Some(load)
+        drives,
+    })
 }
 
 fn strut(links: &Links, name: &str, item: &StrutItem, faults: &mut Faults<'_>) -> Option<Strut> {

@@ -1,6 +1,7 @@
 //! Prescribed motions in a scene file: their format, and how they are read.
 
 use super::fault::Faults;
+use super::loads::key_of;
 use super::quantity::Quantity;
 use crate::prescribed::PrescribedMotion;
 use crate::spline::Spline;
@@ -44,27 +45,31 @@ pub enum PrescribedItem {
 /// The motion of the joint `name`; none where it cannot be.
 pub(super) fn read(name: &str, item: &PrescribedItem, faults: &mut Faults<'_>) -> Option<PrescribedMotion> {
     let spline = |points: &[[f64; 2]]| Spline::natural(&points.iter().map(|&[t, x]| (t, x)).collect::<Vec<_>>());
-    let motion = match item {
-        PrescribedItem::Polynomial { coefficients } => PrescribedMotion::Polynomial {
-            coefficients: coefficients.clone(),
-        },
+    let (word, motion) = match item {
+        PrescribedItem::Polynomial { coefficients } => {
+            let coefficients = coefficients.clone();
+            ("polynomial", PrescribedMotion::Polynomial { coefficients })
+        }
         PrescribedItem::Harmonic {
             mean,
             amplitude,
             frequency,
             phase,
-        } => PrescribedMotion::Harmonic {
-            mean: mean.0,
-            amplitude: amplitude.0,
-            frequency: *frequency,
-            phase: phase.0,
-        },
-        PrescribedItem::Table { points } => PrescribedMotion::Table { spline: spline(points) },
-        PrescribedItem::Speeds { points } => PrescribedMotion::Speeds { spline: spline(points) },
+        } => {
+            let motion = PrescribedMotion::Harmonic {
+                mean: mean.0,
+                amplitude: amplitude.0,
+                frequency: *frequency,
+                phase: phase.0,
+            };
+            ("harmonic", motion)
+        }
+        PrescribedItem::Table { points } => ("table", PrescribedMotion::Table { spline: spline(points) }),
+        PrescribedItem::Speeds { points } => ("speeds", PrescribedMotion::Speeds { spline: spline(points) }),
     };
     if let Some((parameter, value, expected)) = motion.fault() {
         let message = format!("{parameter} = {value} must be {expected}");
-        faults.add(&["joints", name, "prescribed"], message);
+        faults.add(&["joints", name, "prescribed", word, key_of(parameter)], message);
         return None;
     }
     Some(motion)

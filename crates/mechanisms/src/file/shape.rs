@@ -15,6 +15,35 @@ pub(super) fn mend(schema: &Json, table: &mut DeTable<'_>, faults: &mut Faults<'
     Shape { schema, faults }.object(schema, table, 0, &[]);
 }
 
+/// Makes the descriptions of a schema, which are those of Rust's documentation, readable in editors: plain brackets, no breaks of
+/// lines but between paragraphs, and a description of a kind of table at the key that chooses it.
+pub(super) fn describe(schema: &mut Json) {
+    match schema {
+        Json::Object(entries) => {
+            if let Some(Json::String(text)) = entries.get_mut("description") {
+                let plain = text.replace("\\[", "[").replace("\\]", "]");
+                // Paragraphs in one line, but for those with formulas.
+                *text = if plain.contains("```") {
+                    plain
+                } else {
+                    plain.replace("\n\n", "\r").replace('\n', " ").replace('\r', "\n\n")
+                };
+            }
+            let text = entries.get("description").cloned();
+            let properties = entries.get_mut("properties").and_then(Json::as_object_mut);
+            let chosen = properties.filter(|chosen| chosen.len() == 1);
+            for value in chosen.into_iter().flat_map(|chosen| chosen.values_mut()) {
+                if let (Some(text), Some(value)) = (&text, value.as_object_mut()) {
+                    value.entry("description").or_insert(text.clone());
+                }
+            }
+            entries.values_mut().for_each(describe);
+        }
+        Json::Array(list) => list.iter_mut().for_each(describe),
+        _ => {}
+    }
+}
+
 struct Shape<'s, 'f, 'a> {
     schema: &'s Json,
     faults: &'f mut Faults<'a>,

@@ -34,18 +34,21 @@ pub(super) fn check(file: &SceneFile, names: &Names, faults: &mut Faults<'_>) {
 /// Numbers of a run.
 fn run(run: &RunItem, faults: &mut Faults<'_>) {
     let numbers = [
-        ("until", Some(run.until)),
-        ("every", run.every),
-        ("rtol", run.rtol),
-        ("atol", run.atol),
-        ("step", run.step),
+        ("until", Some(run.until), " s"),
+        ("every", run.every, " s"),
+        ("rtol", run.rtol, ""),
+        ("atol", run.atol, ""),
+        ("step", run.step, " s"),
     ];
-    for (key, value) in numbers.into_iter().filter_map(|(key, value)| Some((key, value?))) {
-        if !(value.is_finite() && value > 0.0) {
-            faults.add(&["run", key], format!("{value} must be a finite positive number"));
+    for (key, value, unit) in numbers {
+        if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+            faults.add(&["run", key], format!("{value}{unit} must be a finite positive number"));
         }
     }
-    if run.every.is_some_and(|every| run.until / every > MOST_ROWS as f64) {
+    if run
+        .every
+        .is_some_and(|every| every > 0.0 && run.until / every > MOST_ROWS as f64)
+    {
         faults.add(
             &["run", "every"],
             format!("makes more than {MOST_ROWS} rows; give more time between two of them"),
