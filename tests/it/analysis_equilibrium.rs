@@ -1,17 +1,20 @@
 //! Static equilibria against closed forms, minima of potential energy, and beam theory.
 
+use linkdyn_integrators::Radau5;
 use linkdyn_kinematics::{Joint, Pose, Positions};
-use linkdyn_mechanisms::analysis::equilibrium::{Seek, Settings, Stability};
+use linkdyn_mechanisms::analysis::equilibrium::{Seek, Settings, Stability, settled};
 use linkdyn_mechanisms::analysis::positions::Sweep;
 use linkdyn_mechanisms::analysis::{AnalysisError, equilibrium, positions};
 use linkdyn_mechanisms::catalogue::{Rsup, rsup};
-use linkdyn_mechanisms::{Drive, Linkage, Mechanism, Mount, Spring, Start};
+use linkdyn_mechanisms::{Drive, Linkage, Mechanism, Mount, PrescribedMotion, Spring, Start, State};
 use linkdyn_tests::linkages::{Cantilever, FourBar, bricard, cantilever, hanging};
+use linkdyn_tests::scenes::{Ready, simulate};
 use std::f64::consts::PI;
 
 const NEAREST: Settings = Settings {
     seek: Seek::Nearest,
     time: 0.0,
+    held: Vec::new(),
     iterations: 100,
 };
 
@@ -235,6 +238,67 @@ fn a_loop_with_a_flexible_coupler_rests() {
             .zip(work.multipliers())
             .all(|(a, b)| (a - b).abs() < 1e-6)
     );
+}
+
+/// What rests stays: a run from there with the crank held.
+#[test]
+fn a_run_that_begins_sagged_stays_where_it_is() {
+    let scene = rsup(&Rsup {
+        flexible: Some(2),
+        ..Rsup::default()
+    });
+    let mut scene = scene.expect("a variant");
+    scene.start.speeds.clear();
+    let mechanism = scene.linkage.build().expect("sound");
+    let settings = Settings {
+        held: vec![scene.crank.clone()],
+        ..Settings::default()
+    };
+    let settled = settled(&mechanism, &scene.start, &settings).expect("there is one");
+    let (begin, _) = mechanism.assemble(&scene.start).expect("closes");
+    let crank = mechanism
+        .coordinate_names()
+        .position(|name| name == scene.crank)
+        .expect("it is there");
+    assert!(settled.q[crank] == begin.q[crank] && settled.v.iter().all(|v| *v == 0.0));
+    let gap = settled
+        .q
+        .iter()
+        .zip(&begin.q)
+        .fold(0.0, |s, (a, b)| f64::max(s, (a - b).abs()));
+    assert!(gap > 1e-7, "{gap:e}");
+    let joint = scene.linkage.joint_named("J11").expect("that of the crank");
+    let motion = PrescribedMotion::Polynomial {
+        coefficients: vec![settled.q[crank]],
+    };
+    scene.linkage.prescribe(joint, motion);
+    let mechanism = scene.linkage.build().expect("sound");
+    let (sagged, straight) = (settled.clone(), begin);
+    let moved = |start: State| {
+        let (scene, mechanism) = (scene.clone(), mechanism.clone());
+        let run = simulate(
+            &Ready {
+                scene,
+                mechanism,
+                start: start.clone(),
+            },
+            Radau5::default(),
+            1e-8,
+            0.02,
+            0.005,
+        );
+        run.end.expect("runs to the end");
+        let gaps = run.rows.iter().flat_map(|row| {
+            row.q
+                .iter()
+                .zip(&start.q)
+                .map(|(a, b)| (a - b).abs())
+                .collect::<Vec<_>>()
+        });
+        gaps.fold(0.0, f64::max)
+    };
+    let (rest, swing) = (moved(sagged), moved(straight));
+    assert!(rest < 1e-4 * swing && swing > 1e-7, "{rest:e} {swing:e}");
 }
 
 #[test]

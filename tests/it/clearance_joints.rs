@@ -8,8 +8,8 @@ use linkdyn_friction::{BristleStart, ElastoPlastic, Guard, LuGre};
 use linkdyn_kinematics::{Joint, Pose, Positions, Velocities};
 use linkdyn_mechanisms::analysis::mobility;
 use linkdyn_mechanisms::{
-    Clearance, ClearanceModel, Drive, LinkHandle, Linkage, Mechanism, Mount, Observation, Side, Simulation, Spring,
-    Start, State,
+    Clearance, ClearanceModel, Drive, JointHandle, Limit, LinkHandle, Linkage, Mechanism, Mount, Observation,
+    PrescribedMotion, Side, Simulation, Spring, Start, State,
 };
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 
@@ -552,6 +552,54 @@ fn drives_and_springs_act_on_the_turn() {
             "{:?}",
             seen.energy
         );
+    }
+}
+
+#[test]
+fn limits_and_prescribed_motion_act_on_the_turn() {
+    for (joint, model, _) in &kinds()[..2] {
+        let hung = Hung::new(*joint, Some(clearance(*model, CLEARANCE)), &[]);
+        let with = |change: &dyn Fn(&mut Linkage, JointHandle)| {
+            let mut linkage = hung.tree();
+            let handle = linkage.joint_named("J").expect("it is there");
+            change(&mut linkage, handle);
+            linkage.build().expect("valid")
+        };
+        let turn = |mechanism: &Mechanism| {
+            mechanism
+                .coordinate_names()
+                .position(|name| name == "J")
+                .expect("a turn")
+        };
+
+        let coefficients = vec![0.1, 3.0];
+        let guided = with(&|linkage, handle| {
+            let coefficients = coefficients.clone();
+            linkage.prescribe(handle, PrescribedMotion::Polynomial { coefficients });
+        });
+        let aside = Start {
+            speeds: vec![("J.x".into(), 0.5)],
+            ..Start::default()
+        };
+        let (start, _) = guided.assemble(&aside).expect("closed");
+        let run = go(&mut begin(&guided, &start), 0.02, 0.001);
+        assert!(!run.contacts.is_empty());
+        for row in &run.rows {
+            assert!((row.q[turn(&guided)] - 0.1 - 3.0 * row.t).abs() < 1e-12);
+        }
+
+        let stopped = with(&|linkage, handle| {
+            let (lower, upper, law) = (None, Some(0.02), crate::limits::law(0.5));
+            linkage.limit(handle, Limit { lower, upper, law });
+        });
+        let names: Vec<String> = stopped.contact_names().collect();
+        assert_eq!(names[0], "J.upper");
+        let (mut start, _) = stopped.assemble(&Start::default()).expect("closed");
+        start.v[turn(&stopped)] = 3.0;
+        let run = go(&mut begin(&stopped, &start), 0.02, 0.001);
+        assert!(run.contacts.iter().any(|(_, event)| event.point == 0 && event.made));
+        let farthest = run.rows.iter().fold(0.0, |s, row| f64::max(s, row.q[turn(&stopped)]));
+        assert!(farthest < 0.04, "{farthest}");
     }
 }
 

@@ -1,11 +1,13 @@
 //! Loops whose positions are known in closed form, assembled by Newton's method through the public interface.
 
-use linkdyn_kinematics::Joint;
+use linkdyn_dynamics::RigidInertia;
 use linkdyn_kinematics::assembly::{Assembly, AssemblyError, Branch, Settings, assemble};
-use linkdyn_mechanisms::{Mechanism, Start, StartError, State};
+use linkdyn_kinematics::{Joint, Pose};
+use linkdyn_mechanisms::{Linkage, Mechanism, Mount, Start, StartError, State};
 use linkdyn_tests::linkages::{self, FourBar, Rssr, bennett, cardan};
 use linkdyn_tests::numbers::apart;
 use linkdyn_tests::strategies;
+use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -200,6 +202,62 @@ fn bennett_angles_are_those_in_closed_form() {
         let (_, all) = start(&mechanism, &guess, &[]).expect("near a closed position");
         assert_eq!(all.rank, 2, "mobility 3 - 2 = 1");
     }
+}
+
+/// Bricard's threefold symmetric loop: six links of 1 m, twists `alpha` and `-alpha` in turn; coordinates `t1` to `t5`, the sixth joint cut.
+fn threefold(alpha: f64) -> Mechanism {
+    let link = |alpha: f64| Pose {
+        origin: Vector3::x(),
+        ..Pose::turn(Vector3::x_axis(), alpha)
+    };
+    let mut linkage = Linkage::new([0.0, 0.0, -9.81]);
+    let mut last = Mount::at_origin(Linkage::GROUND);
+    for k in 1..=5 {
+        let body = linkage.link(
+            &format!("{k}"),
+            RigidInertia::solid_cylinder(7850.0, 0.02, 1.0, &Vector3::x()),
+        );
+        linkage.joint(&format!("t{k}"), Joint::revolute_z(), last, Mount::at_origin(body));
+        last = Mount::with_pose(body, link(if k % 2 == 1 { alpha } else { -alpha }));
+    }
+    let ground = Mount::with_pose(Linkage::GROUND, link(-alpha).inverse());
+    linkage.cut("t6", Joint::revolute_z(), last, ground);
+    linkage.build().expect("a valid linkage")
+}
+
+#[test]
+fn threefold_bricard_angles_are_those_in_closed_form() {
+    let mut closed = 0;
+    for alpha in [40.0_f64, 70.0, 110.0].map(f64::to_radians) {
+        let (sin, cos) = alpha.sin_cos();
+        let mechanism = threefold(alpha);
+        for t in [10.0_f64, 60.0, 100.0, 150.0].map(f64::to_radians) {
+            // cos^2 alpha + sin^2 alpha (cos t + cos p) + (1 + cos^2 alpha) cos t cos p = 2 cos alpha sin t sin p, solved for p.
+            let (a, b) = (sin * sin + (1.0 + cos * cos) * t.cos(), -2.0 * cos * t.sin());
+            let ratio = -(cos * cos + sin * sin * t.cos()) / a.hypot(b);
+            if ratio.abs() > 1.0 {
+                continue;
+            }
+            for p in [1.0, -1.0].map(|side| b.atan2(a) + side * ratio.acos()) {
+                let guess = [
+                    ("t1", t),
+                    ("t2", p + 0.02),
+                    ("t3", t - 0.02),
+                    ("t4", p),
+                    ("t5", t + 0.01),
+                ];
+                let (state, assembly) = start(&mechanism, &guess, &["t1"]).expect("near a closed position");
+                for (found, angle) in state.q.iter().zip([t, p, t, p, t]) {
+                    assert!(apart(*found, angle) < ANGLE, "{alpha} {t}: {found} instead of {angle}");
+                }
+                // One of five equations is redundant, and one freedom is held.
+                assert_eq!((assembly.rank, assembly.equations), (4, 5));
+                closed += 1;
+            }
+        }
+    }
+    // Of twelve angles two are out of reach.
+    assert_eq!(closed, 20);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use linkdyn_contact::{Fit, RestitutionLaw};
 use linkdyn_integrators::{Dop853, Radau5};
 use linkdyn_kinematics::Joint;
 use linkdyn_mechanisms::catalogue::{Rsup, rsup};
-use linkdyn_mechanisms::{Linkage, Mount, Simulation, Start};
+use linkdyn_mechanisms::{Drive, Linkage, Mount, Simulation, Start};
 use linkdyn_tests::scenes::ready_rsup;
 use nalgebra::{Matrix3, Unit, Vector3};
 use std::path::PathBuf;
@@ -95,8 +95,17 @@ const CASES: &[Case] = &[
     ("star of 500 links", || tree(500, |_| 0)),
     ("joints that go round without a cut", || {
         let mut arm = arm();
-        let (here, there) = (Mount::at_origin(arm.lower), Mount::at_origin(arm.upper));
+        let (here, there) = (Mount::at_origin(arm.lower), Mount::at(arm.upper, [0.5, 0.0, 0.0]));
         arm.linkage.joint("third", Joint::revolute_z(), here, there);
+        outcome(arm.linkage, &Start::default(), Dop853::default(), 0.1)
+    }),
+    ("joints that go round, each with a drive", || {
+        let mut arm = arm();
+        let (here, there) = (Mount::at_origin(arm.lower), Mount::at(arm.upper, [0.5, 0.0, 0.0]));
+        let third = arm.linkage.joint("third", Joint::revolute_z(), here, there);
+        for joint in [arm.shoulder, arm.elbow, third] {
+            arm.linkage.drive(joint, Drive::Constant { torque: 1.0 });
+        }
         outcome(arm.linkage, &Start::default(), Dop853::default(), 0.1)
     }),
     ("link without a joint", || {

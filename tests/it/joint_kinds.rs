@@ -3,7 +3,7 @@
 use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Positions, Row, Tree};
 use linkdyn_mechanisms::dynamics::RigidInertia;
 use linkdyn_mechanisms::integrators::{Dop853, Integration, Settings};
-use linkdyn_mechanisms::{Drive, Linkage, Mechanism, Mount, Simulation, Start, run};
+use linkdyn_mechanisms::{BuildError, Drive, Linkage, Mechanism, Mount, Simulation, Start, run};
 use linkdyn_tests::strategies;
 use nalgebra::{DMatrix, Matrix3, Unit, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -66,13 +66,32 @@ fn kinds() -> Vec<Joint> {
     ]
 }
 
+/// How a joint stands in the linkage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Form {
+    Carried,
+    Cut,
+    /// Described from the body's side, so that the body is carried backwards.
+    CarriedBackwards,
+    /// Cut, and described from the body's side.
+    CutBackwards,
+}
+
 #[test]
 fn every_joint_moves_as_its_cut_form() {
     let axis = Unit::new_normalize(Vector3::new(0.3, -0.4, 0.8));
     let across = Unit::new_normalize(axis.cross(&Vector3::x()));
     let skew = Unit::new_normalize(Vector3::new(0.9, 0.2, -0.3));
     for kind in kinds() {
-        let mechanism = |cut: bool| {
+        // From the other side the axes of a universal joint change places.
+        let turned = match kind {
+            Joint::Universal { first, second } => Joint::Universal {
+                first: second,
+                second: first,
+            },
+            other => other,
+        };
+        let mechanism = |form: Form| {
             let mut m = Linkage::new([2.0, -3.0, 1.0]);
             let body = m.link("body", own_inertia());
             let base = Pose {
@@ -80,22 +99,38 @@ fn every_joint_moves_as_its_cut_form() {
                 ..Pose::turn(skew, 0.4)
             };
             let on_ground = Mount::with_pose(Linkage::GROUND, base);
-            if cut {
-                m.joint("free", Joint::Free, on_ground, Mount::at_origin(body));
-                m.cut("joint", kind, on_ground, Mount::at_origin(body));
-            } else {
-                m.joint("joint", kind, on_ground, Mount::at_origin(body));
+            let on_body = Mount::at_origin(body);
+            if matches!(form, Form::Cut | Form::CutBackwards) {
+                m.joint("free", Joint::Free, on_ground, on_body);
+            }
+            match form {
+                Form::Carried => drop(m.joint("joint", kind, on_ground, on_body)),
+                Form::CarriedBackwards => drop(m.joint("joint", turned, on_body, on_ground)),
+                Form::Cut => drop(m.cut("joint", kind, on_ground, on_body)),
+                Form::CutBackwards => drop(m.cut("joint", turned, on_body, on_ground)),
             }
             let arm = m.link("arm", own_inertia());
             let elbow = Mount::at(body, [0.3, 0.1, 0.0]);
             m.joint("elbow", Joint::Revolute { axis: across }, elbow, Mount::at_origin(arm));
-            m.build().expect("sound")
+            m.build()
         };
-        let (carried, cut) = (after_a_second(&mechanism(false)), after_a_second(&mechanism(true)));
-        let gap = (carried.rotation - cut.rotation)
-            .amax()
-            .max((carried.origin - cut.origin).amax());
-        assert!(gap < 1e-9, "{kind:?}: {gap:e}");
+        let carried = after_a_second(&mechanism(Form::Carried).expect("sound"));
+        for form in [Form::Cut, Form::CutBackwards, Form::CarriedBackwards] {
+            let mechanism = match (mechanism(form), kind) {
+                (Ok(mechanism), _) => mechanism,
+                // These cannot be carried backwards.
+                (
+                    Err(BuildError::Disconnected { .. }),
+                    Joint::SphericalZyx | Joint::Spherical | Joint::Planar { .. } | Joint::Free,
+                ) if form == Form::CarriedBackwards => continue,
+                (Err(error), _) => panic!("{kind:?}, {form:?}: {error}"),
+            };
+            let other = after_a_second(&mechanism);
+            let gap = (carried.rotation - other.rotation)
+                .amax()
+                .max((carried.origin - other.origin).amax());
+            assert!(gap < 1e-9, "{kind:?}, {form:?}: {gap:e}");
+        }
     }
 }
 

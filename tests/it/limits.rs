@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 
 const MASS: f64 = 2.0;
 
-fn law(restitution: f64) -> ContactLaw {
+pub(crate) fn law(restitution: f64) -> ContactLaw {
     let damping = Damping::Restitution {
         law: RestitutionLaw::Exact,
         restitution,

@@ -176,13 +176,20 @@ fn joints_that_make_no_tree_are_refused() {
             link: "upper".into()
         }
     );
+    // A joint more than a tree has could be cut, were there not something on the coordinates of each.
+    let drive_all = |arm: &mut Arm, wrist: JointHandle| {
+        for joint in [arm.shoulder, arm.elbow, wrist] {
+            arm.linkage.drive(joint, Drive::Constant { torque: 1.0 });
+        }
+    };
     let twice = refusal(|arm| {
-        arm.linkage.joint(
+        let wrist = arm.linkage.joint(
             "wrist",
-            Joint::Fixed,
+            Joint::revolute_z(),
             Mount::at_origin(Linkage::GROUND),
             Mount::at_origin(arm.lower),
         );
+        drive_all(arm, wrist);
     });
     let (first, second) = ("elbow".into(), "wrist".into());
     assert_eq!(
@@ -193,13 +200,15 @@ fn joints_that_make_no_tree_are_refused() {
             second
         }
     );
+    // From the ground's side a ball cannot carry.
     let ground = refusal(|arm| {
-        arm.linkage.joint(
+        let wrist = arm.linkage.joint(
             "wrist",
-            Joint::Fixed,
+            Joint::SphericalZyx,
             Mount::at_origin(arm.lower),
             Mount::at_origin(Linkage::GROUND),
         );
+        arm.linkage.coordinate_names(wrist, &["a", "b", "c"]);
     });
     assert!(matches!(ground, BuildError::CarriedTwice { link, second, .. } if link == "ground" && second == "wrist"));
     let loose = refusal(|arm| {

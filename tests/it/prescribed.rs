@@ -1,4 +1,4 @@
-//! PrescribedMotion motion against closed forms, against inverse dynamics and against itself as a drive.
+//! Prescribed motion against closed forms, against inverse dynamics and against itself as a drive.
 
 use linkdyn_integrators::{Auto, Dop853, Radau5};
 use linkdyn_mechanisms::analysis::inverse_dynamics::{Prescribed, inverse_dynamics};

@@ -1,9 +1,9 @@
 //! Published cases with numbers, from scene files.
 
-use linkdyn_integrators::{Adams, Dop853};
+use linkdyn_integrators::{Adams, Dop853, Radau5, Rk4};
 use linkdyn_mechanisms::{Observation, file};
 use linkdyn_tests::numbers::apart;
-use linkdyn_tests::scenes::{Ready, index, prepare, simulate};
+use linkdyn_tests::scenes::{Ready, distance, index, prepare, simulate};
 use std::fmt::Write;
 
 const SQUEEZER: &str = include_str!("../../crates/mechanisms/scenes/andrews_squeezer.toml");
@@ -27,17 +27,21 @@ fn benchmark_01_andrews_squeezer_from_a_file_ends_at_the_published_angles() {
     let scene = ready(SQUEEZER);
     let run = simulate(&scene, Dop853::default(), 1e-12, 0.03, 0.003);
     run.end.expect("runs to its end");
+    let implicit = simulate(&scene, Radau5::default(), 1e-12, 0.03, 0.003);
+    implicit.end.expect("runs to its end");
+    let end = implicit.rows.last().expect("rows");
     let q = |row: &Observation, name| row.q[index(&scene, name)];
     let first = &run.rows[0];
     // The published accelerations of the start.
-    for (name, published) in [("beta", 14222.443_919_954_114), ("Theta", -10_666.832_939_965_586)] {
+    for (name, published) in [("beta", 14_222.443_919_954_114), ("Theta", -10_666.832_939_965_586)] {
         let found = first.a[index(&scene, name)];
         assert!((found - published).abs() < 1e-9 * published.abs(), "{name}: {found}");
     }
     let last = run.rows.last().expect("rows");
-    // Right to 9.5 digits, so that 1e-9 is what may be asked for.
+    // The published angles are right to 9.5 digits: 1e-9 of them is what may be asked for. Two methods agree to a hundredth of that.
+    assert!(distance(&last.q, &end.q) < 1e-11, "{:?} {:?}", last.q, end.q);
     for (name, published) in [
-        ("beta", 15.810_771_196_299_04),
+        ("beta", 15.810_771_196_299_04_f64),
         ("Theta", -15.756_371_059_842_98),
         ("gamma", 0.040_822_240_130_731_01),
         ("Phi", -0.534_730_116_322_694_8),
@@ -45,12 +49,31 @@ fn benchmark_01_andrews_squeezer_from_a_file_ends_at_the_published_angles() {
         ("Omega", 0.534_730_116_322_694_8),
         ("epsilon", 1.048_080_741_042_263),
     ] {
-        assert!((q(last, name) - published).abs() < 1e-9, "{name}: {}", q(last, name));
+        let most = 1e-9 * f64::max(published.abs(), 1.0);
+        assert!((q(last, name) - published).abs() < most, "{name}: {}", q(last, name));
+    }
+    // Speeds are right to 7 digits and accelerations to 6, of the largest at least.
+    for (name, speed, acceleration) in [
+        ("beta", 1_139.920_302_151_208, -24_631.763_169_451_96),
+        ("Theta", -1_424.379_294_994_111, 51_850.377_016_103_29),
+        ("gamma", 11.032_912_219_371_34, 324_102.568_641_378_1),
+        ("Phi", 19.293_374_644_213_85, 566_749.364_517_621_3),
+        ("delta", 0.573_569_928_479_080_8, 16_743.629_294_793_61),
+        ("Omega", -19.293_374_644_213_85, -566_749.364_517_622_2),
+        ("epsilon", 0.323_179_165_802_695_5, 9_826.520_791_458_423),
+    ] {
+        let k = index(&scene, name);
+        assert!((last.v[k] - speed).abs() < 1e-7 * 1424.0, "{name}: {}", last.v[k]);
+        assert!(
+            (last.a[k] - acceleration).abs() < 1e-6 * 566_749.0,
+            "{name}: {}",
+            last.a[k]
+        );
     }
     for row in &run.rows {
         assert!((q(row, "Phi") + q(row, "Omega")).abs() < 1e-10, "t = {}", row.t);
-        // Energy less the motor's work.
-        let balance = row.energy.total() - 0.033 * (q(row, "beta") - q(first, "beta"));
+        // Energy less the motor's work from the angle zero on.
+        let balance = row.energy.total() - 0.033 * q(row, "beta");
         assert!((balance - 1.437_832_957_53).abs() < 1e-10, "t = {}: {balance}", row.t);
     }
 }
@@ -58,7 +81,7 @@ fn benchmark_01_andrews_squeezer_from_a_file_ends_at_the_published_angles() {
 #[test]
 fn benchmark_04_pendulum_index3_from_a_file_swings_by_elliptic_functions() {
     let scene = ready(PENDULUM);
-    let run = simulate(&scene, Adams::default(), 1e-12, 10.0, 0.01);
+    let run = simulate(&scene, Dop853::default(), 1e-12, 10.0, 0.01);
     run.end.expect("runs to its end");
     for (t, x, y) in [
         (0.5, -0.391_048_791_550_55, -0.920_369_948_785_19),
@@ -146,12 +169,36 @@ fn upright(n: usize, until: f64) -> f64 {
 #[test]
 fn benchmark_07_n_four_bar_from_a_file_keeps_its_branch_through_singular_positions() {
     let published = [
-        (0.5, 0.695_286_633_164_401, 0.718_732_563_435_742),
-        (1.0, -0.195_020_301_949_435, -0.980_799_205_662_174),
-        (2.0, 0.057_815_795_768_011_4, 0.998_327_267_863_455),
-        (4.0, 0.117_616_102_376_809, 0.993_059_138_451_325),
-        (5.0, -0.811_310_461_005_107, -0.584_615_545_348_976),
-        (10.0, 0.328_458_111_540_815, 0.944_518_538_178_601),
+        (
+            0.5,
+            [0.695_286_633_164_401, 0.718_732_563_435_742],
+            [1.960_205_425_371_83, -1.896_261_140_586_58],
+        ),
+        (
+            1.0,
+            [-0.195_020_301_949_435, -0.980_799_205_662_174],
+            [-6.676_678_036_881_16, 1.327_578_325_160_49],
+        ),
+        (
+            2.0,
+            [0.057_815_795_768_011_4, 0.998_327_267_863_455],
+            [1.017_260_136_620_44, -0.058_912_248_713_445_6],
+        ),
+        (
+            4.0,
+            [0.117_616_102_376_809, 0.993_059_138_451_325],
+            [1.069_039_265_028_97, -0.126_615_049_166_72],
+        ),
+        (
+            5.0,
+            [-0.811_310_461_005_107, -0.584_615_545_348_976],
+            [-3.569_117_397_193_21, 4.953_105_171_313_33],
+        ),
+        (
+            10.0,
+            [0.328_458_111_540_815, 0.944_518_538_178_601],
+            [1.423_051_470_206_94, -0.494_868_845_487_043],
+        ),
     ];
     assert_eq!(
         file::scene("file", &windows(2)).map(|scene| scene.linkage.outline()),
@@ -159,7 +206,9 @@ fn benchmark_07_n_four_bar_from_a_file_keeps_its_branch_through_singular_positio
     );
     for n in [2, 5] {
         let scene = ready(&windows(n));
-        let run = simulate(&scene, Dop853::default(), 1e-11, 10.0, 0.5);
+        // As the file says: error control would shrink steps at the singular positions, where rounding is all that there is.
+        let step = scene.scene.settings.step.expect("a fixed step");
+        let run = simulate(&scene, Rk4::new(step), 1e-11, 10.0, 0.1);
         run.end.expect("runs to its end");
         let energy = run.rows[0].energy.total();
         for row in &run.rows {
@@ -172,9 +221,14 @@ fn benchmark_07_n_four_bar_from_a_file_keeps_its_branch_through_singular_positio
         }
         let end = run.rows.last().expect("rows").q[index(&scene, "A0")];
         assert!((end - upright(n, 10.0)).abs() < 1e-6, "{end} for {}", upright(n, 10.0));
-        for (t, x, y) in published.iter().filter(|_| n == 2) {
-            let (sin, cos) = at(&run.rows, *t).q[index(&scene, "A0")].sin_cos();
+        for (t, [x, y], [x_rate, y_rate]) in published.into_iter().filter(|_| n == 2) {
+            let row = at(&run.rows, t);
+            let (sin, cos) = row.q[index(&scene, "A0")].sin_cos();
             assert!((sin - x).abs() < 1e-6 && (cos - y).abs() < 1e-6, "t = {t}: {sin} {cos}");
+            let rate = row.v[index(&scene, "A0")];
+            // Seven times as fast as the angle at most.
+            let (dx, dy) = (cos * rate - x_rate, -sin * rate - y_rate);
+            assert!(dx.abs() < 1e-5 && dy.abs() < 1e-5, "t = {t}: {dx:e} {dy:e}");
         }
     }
 }

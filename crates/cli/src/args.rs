@@ -27,7 +27,7 @@ pub enum Command {
     Analyse(AnalyseArgs),
     /// Say all that is wrong with a scene file, else draw its tree and count its freedoms
     Check(CheckArgs),
-    /// Draw a scene at its start, as SVG or PNG
+    /// Draw a scene at its start, as SVG or PNG: links in colours, joints by their symbols, the ground hatched
     Draw(DrawArgs),
     /// Write a commented scene file to begin with
     New(NewArgs),
@@ -59,6 +59,10 @@ pub struct RunArgs {
     /// Formulation of the equations of motion
     #[arg(long, value_enum, default_value_t = FormulationArg::Recursive)]
     pub formulation: FormulationArg,
+    /// Begin where the scene rests under its loads at t = 0, flexible links sagged, with these coordinates where the scene starts (`A` or
+    /// `A,B`, or `none`), and with the speeds of its start [default: not so; without names the scene's crank]
+    #[arg(long, value_name = "HELD", num_args = 0..=1, default_missing_value = "", require_equals = true)]
+    pub equilibrium: Option<String>,
     /// Integration method: auto (adams or radau5, as the run finds them cheaper), adams (variable order and step), dop853, dopri5,
     /// radau5, bdf and rodas (for stiff scenes); with fixed step rk4, newmark [default: the file's, else auto]
     #[arg(long, value_name = "NAME")]
@@ -195,17 +199,30 @@ pub struct AnalyseArgs {
     /// What to switch in the scene.
     #[command(flatten)]
     pub variant: VariantArgs,
-    /// Coordinate to drive (positions) [default: the scene's crank]
+    /// Coordinate to drive (positions, drives) [default: the scene's crank]
     #[arg(long, value_name = "NAME")]
     pub drive: Option<String>,
-    /// Value to drive it to from the start, in radians or metres (positions) [default: one turn]
+    /// Value to drive it to from the start, in radians or metres (positions, drives) [default: one turn]
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub to: Option<f64>,
-    /// Equal parts of the way, one row more than these (positions)
+    /// Equal parts of the way, one row more than these (positions, drives)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), default_value_t = 24)]
     pub parts: u16,
-    /// Time at which loads are taken, in seconds (equilibrium, modes)
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    /// Speed at which it is driven, in radians or metres per second (positions, drives)
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 1.0)]
+    pub speed: f64,
+    /// Rate of that speed (positions, drives)
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub acceleration: f64,
+    /// Coordinates that stay where the scene starts, `A` or `A,B` (equilibrium, modes, branches) [default: none; for branches those that
+    /// the scene's start holds, else its crank]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub hold: Vec<String>,
+    /// Guesses to search from (branches)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), default_value_t = 200)]
+    pub guesses: u16,
+    /// Time at which loads are taken, in seconds (equilibrium, modes, drives)
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 0.0)]
     pub time: f64,
     /// Print the tables as JSON
     #[arg(long)]
@@ -217,29 +234,36 @@ pub struct AnalyseArgs {
 pub enum AnalysisArg {
     /// Freedoms, and the redundant equations by name
     Mobility,
-    /// Positions, speeds at unit speed of the driven coordinate, and their rates
+    /// All closed positions that a search finds
+    Branches,
+    /// Positions of all coordinates over a range of the driven one, their speeds and the rates of these
     Positions,
+    /// Torque or force that drives it through a range, with the reactions of all joints
+    Drives,
     /// Where it rests, and whether stably
     Equilibrium,
-    /// Frequencies and damping about the equilibrium
+    /// Frequencies, damping and shapes about the equilibrium
     Modes,
 }
 
 /// Options of `linkdyn check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scene file, or name of a built-in scene
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
 }
 
 /// Options of `linkdyn draw`.
 #[derive(Debug, Args)]
 pub struct DrawArgs {
-    /// Scene file, or name of a built-in scene
+    /// Name of a built-in scene (see `linkdyn scenes`), or a scene file
     pub scene: String,
-    /// Picture to write, which ends in .svg or .png
+    /// Picture to write, which ends in .svg or .png; one that is there is replaced
     #[arg(short, long, value_name = "PICTURE")]
     pub out: PathBuf,
+    /// What to switch in the scene.
+    #[command(flatten)]
+    pub variant: VariantArgs,
 }
 
 /// Options of `linkdyn new`.
@@ -247,6 +271,9 @@ pub struct DrawArgs {
 pub struct NewArgs {
     /// File to write, which must not be there yet
     pub file: PathBuf,
+    /// Example to begin with (see `linkdyn scenes`) [default: four_bar]
+    #[arg(long, value_name = "NAME")]
+    pub from: Option<String>,
 }
 
 /// Options of `linkdyn scenes`.

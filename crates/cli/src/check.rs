@@ -38,11 +38,15 @@ pub fn check(args: &CheckArgs) -> Result<(), CliError> {
 /// `linkdyn new`.
 ///
 /// # Errors
-/// A file that is there already, or cannot be written.
+/// A file that is there already, or cannot be written; an example that there is not.
 pub fn new(args: &NewArgs) -> Result<(), CliError> {
+    let text = match &args.from {
+        Some(name) => scenes::example(name)?,
+        None => file::TEMPLATE,
+    };
     let path = args.file.display();
     let file = OpenOptions::new().write(true).create_new(true).open(&args.file);
-    let written = file.and_then(|mut file| file.write_all(file::TEMPLATE.as_bytes()));
+    let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|error| {
         CliError::usage(format!("cannot write `{path}`"))
             .with_source(error)

@@ -1,4 +1,4 @@
-//! The built-in scenes and what the command line may switch in them; scene files.
+//! The built-in scenes and what the command line may switch in them; scene files, those of the user and those that the program carries.
 
 use std::path::{Path, PathBuf};
 
@@ -80,10 +80,12 @@ pub struct Entry {
 #[derive(Clone)]
 enum Make {
     BuiltIn(fn(&Variant) -> Result<Scene, CliError>),
+    /// Text of an example.
+    Example(&'static str),
     File(PathBuf),
 }
 
-/// All built-in scenes.
+/// The built-in scenes that have variants.
 pub const SCENES: &[Entry] = &[
     Entry {
         name: "rsrrr",
@@ -208,17 +210,42 @@ fn friction(model: BristleArg) -> Bristle {
 /// Unknown names, with the nearest known one.
 pub fn find(name: &str) -> Result<Entry, CliError> {
     if is_file(name) {
-        return Ok(Entry {
-            name: "FILE",
-            options: &[],
-            make: Make::File(name.into()),
-            label: |_| "as in the file".into(),
-            beside: |_| Vec::new(),
-        });
+        return Ok(as_written("FILE", Make::File(name.into())));
     }
-    let known = || SCENES.iter().map(|entry| entry.name);
-    let entry = SCENES.iter().find(|entry| entry.name == name);
-    entry.cloned().ok_or_else(|| CliError::unknown("scene", name, known()))
+    let known = || all().map(|entry| entry.name);
+    let entry = all().find(|entry| entry.name == name);
+    entry.ok_or_else(|| CliError::unknown("scene", name, known()))
+}
+
+/// All built-in scenes: those with variants, then the examples as their files have them.
+fn all() -> impl Iterator<Item = Entry> {
+    let is_new = |name: &str| SCENES.iter().all(|entry| entry.name != name);
+    let examples = file::EXAMPLES.iter().filter(move |(name, _)| is_new(name));
+    let examples = examples.map(|(name, text)| as_written(name, Make::Example(text)));
+    SCENES.iter().cloned().chain(examples)
+}
+
+/// A scene in which the command line switches nothing.
+fn as_written(name: &'static str, make: Make) -> Entry {
+    Entry {
+        name,
+        options: &[],
+        make,
+        label: |_| "as in the file".into(),
+        beside: |_| Vec::new(),
+    }
+}
+
+/// The text of an example's file.
+///
+/// # Errors
+/// Unknown names, with the nearest known one.
+pub fn example(name: &str) -> Result<&'static str, CliError> {
+    let example = file::EXAMPLES.iter().find(|(known, _)| *known == name);
+    let known = file::EXAMPLES.iter().map(|(known, _)| *known);
+    example
+        .map(|(_, text)| *text)
+        .ok_or_else(|| CliError::unknown("scene", name, known))
 }
 
 fn is_file(name: &str) -> bool {
@@ -277,6 +304,16 @@ impl Entry {
                 let message = "`--friction` and `--no-friction` do not go with scene files";
                 Err(CliError::usage(message).with_hint("write or delete `friction` in the file"))
             }
+            Make::Example(_) if variant.friction.is_some() => {
+                let name = self.name;
+                let message = format!("`--friction` and `--no-friction` do not go with scene `{name}`");
+                let hint = format!(
+                    "`linkdyn new mine.toml --from {name}` writes its file, in which `friction` can be given to joints"
+                );
+                Err(CliError::usage(message).with_hint(hint))
+            }
+            Make::Example(text) => file::scene(self.name, text)
+                .map_err(|error| CliError::failed(format!("scene `{}` is not right", self.name)).with_source(error)),
             Make::File(path) => read(path),
         }
     }
@@ -303,13 +340,17 @@ pub fn list(args: &ScenesArgs) -> Result<(), CliError> {
         "scenes",
         &[("scene", ""), ("what it is", ""), ("until", "s"), ("options", "")],
     );
-    for entry in SCENES {
+    for entry in all() {
         let scene = entry.scene(&Variant::default())?;
+        let options = match entry.make {
+            Make::BuiltIn(_) => format!("--friction --no-friction {}", entry.options.join(" ")),
+            _ => String::new(),
+        };
         table.row([
             Cell::text(entry.name),
             Cell::text(scene.summary),
             Cell::number(scene.until),
-            Cell::text(format!("--friction --no-friction {}", entry.options.join(" "))),
+            Cell::text(options),
         ]);
     }
     if args.json {

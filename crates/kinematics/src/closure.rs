@@ -89,6 +89,8 @@ pub struct Closure {
     predecessor: Attachment,
     successor: Attachment,
     rows: Vec<Row>,
+    /// Whether the rows are those of a kind of joint, not of one's own.
+    of_a_joint: bool,
     equations: usize,
     /// Freedoms that move the predecessor only.
     on_predecessor: Vec<Mover>,
@@ -134,7 +136,10 @@ impl Closure {
     /// # Panics
     /// If a link is not of this tree.
     pub fn new(tree: &Tree, predecessor: Attachment, successor: Attachment, joint: &Joint) -> Self {
-        Self::with_rows(tree, predecessor, successor, rows_of(joint))
+        Self {
+            of_a_joint: true,
+            ..Self::with_rows(tree, predecessor, successor, rows_of(joint))
+        }
     }
 
     /// Closure from equations of one's own choice.
@@ -158,6 +163,7 @@ impl Closure {
             on_predecessor: movers(predecessor.link, successor.link),
             on_successor: movers(successor.link, predecessor.link),
             equations: rows.iter().map(Row::equations).sum(),
+            of_a_joint: false,
             predecessor,
             successor,
             rows,
@@ -172,6 +178,11 @@ impl Closure {
     /// The equations.
     pub fn rows(&self) -> &[Row] {
         &self.rows
+    }
+
+    /// Whether they are those of a kind of joint.
+    pub(crate) fn is_of_a_joint(&self) -> bool {
+        self.of_a_joint
     }
 
     /// The frame on the predecessor.

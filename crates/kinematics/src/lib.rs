@@ -12,6 +12,7 @@ mod pose;
 mod spatial;
 mod tree;
 mod turned;
+mod upright;
 
 pub use closure::{Attachment, Closure, Ends, Row};
 pub use derivatives::Transforms;

@@ -21,6 +21,14 @@ impl Linkage {
     pub fn build(&self) -> Result<Mechanism, BuildError> {
         self.check_names()?;
         self.check_items()?;
+        match self.with_cuts_chosen() {
+            Some(chosen) => chosen.build_tree(),
+            None => self.build_tree(),
+        }
+    }
+
+    /// Builds what is checked and a tree.
+    fn build_tree(&self) -> Result<Mechanism, BuildError> {
         let placed = self.place()?;
 
         let (mut coordinates, mut speeds) = (Vec::new(), Vec::new());

@@ -2,7 +2,7 @@
 //! [`Linkage::build`].
 
 use crate::clearance::Clearance;
-use crate::linkage::{JointHandle, Linkage};
+use crate::linkage::{JointHandle, LinkHandle, Linkage};
 use crate::spring::Spring;
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_friction::Friction;
@@ -12,6 +12,12 @@ impl Linkage {
     pub fn inertia_mut(&mut self, link: &str) -> Option<&mut RigidInertia> {
         let found = self.links.iter_mut().find(|(name, _)| name == link);
         found.map(|(_, inertia)| inertia)
+    }
+
+    /// Handle of a link by its name; `None` for unknown names.
+    pub fn link_named(&self, link: &str) -> Option<LinkHandle> {
+        let found = self.links.iter().position(|(name, _)| name == link);
+        found.map(|index| LinkHandle(Some(index)))
     }
 
     /// Handle of a joint of the tree by its name; `None` for unknown names.

@@ -230,6 +230,15 @@ pub enum StartError {
         /// As prescribed.
         prescribed: f64,
     },
+    /// A cut joint closes the wrong way round: its equations ask for right angles, which an axis that points backwards makes too.
+    #[error(
+        "from this guess cut joint `{joint}` closes the wrong way round, with an axis that points backwards; guess coordinates nearer to \
+         the position meant, or turn one of its mounts"
+    )]
+    Reversed {
+        /// The cut joint.
+        joint: String,
+    },
     /// The loops cannot be closed.
     #[error("start: {0}")]
     Assembly(#[from] AssemblyError),

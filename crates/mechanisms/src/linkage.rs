@@ -164,6 +164,12 @@ impl Linkage {
     }
 
     /// Adds a joint of the tree: `predecessor` lies on the side of the ground, `successor` is carried by the joint.
+    ///
+    /// Where the joints added so make no tree, [`Linkage::build`] chooses which of them are cut, as [`spanning_tree`](crate::spanning_tree)
+    /// says: those with many freedoms, never one with a drive, springs, friction, a limit, prescribed motion, clearance or names of its
+    /// coordinates. A joint may then carry its predecessor from the successor's side; its coordinates mean the same all the same, its
+    /// reaction is that on the link it carries. [`Linkage::cut`] says it for a joint oneself. A cut joint has no coordinates: which names
+    /// there are tells [`Mechanism::coordinate_names`](crate::Mechanism::coordinate_names), the tree [`Linkage::outline`].
     pub fn joint(&mut self, name: &str, joint: Joint, predecessor: Mount, successor: Mount) -> JointHandle {
         self.joints.push(JointItem {
             name: name.to_owned(),
@@ -205,7 +211,7 @@ impl Linkage {
         handle
     }
 
-    /// Adds a cut joint: it closes a loop by equations, its multipliers act with + on the predecessor.
+    /// Adds a joint that is cut: it closes a loop by equations, its multipliers act with + on the predecessor.
     pub fn cut(&mut self, name: &str, joint: Joint, predecessor: Mount, successor: Mount) -> CutHandle {
         self.cuts.push(CutItem {
             name: name.to_owned(),

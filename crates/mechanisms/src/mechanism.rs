@@ -5,7 +5,7 @@ use crate::error::{MotionError, StartError};
 use linkdyn_dynamics::{DynamicsError, System};
 use linkdyn_friction::Bristle;
 use linkdyn_kinematics::assembly::{self, Assembly, Settings};
-use linkdyn_kinematics::{Attachment, Closure, LinkId, Pose};
+use linkdyn_kinematics::{Attachment, Closure, LinkId, Pose, Positions};
 use std::sync::Arc;
 
 /// An immutable mechanism; cheap to clone and to share between threads.
@@ -154,9 +154,13 @@ impl Mechanism {
 
     /// Which load has states, integrals or events of its own, or which coordinate a prescribed motion, if one has.
     pub(crate) fn stateful(&self) -> Option<String> {
-        if let Some(name) = self.prescribed_names().next() {
-            return Some(format!("coordinate `{name}` has a prescribed motion"));
-        }
+        let guided = self.prescribed_names().next();
+        let guided = guided.map(|name| format!("coordinate `{name}` has a prescribed motion"));
+        guided.or_else(|| self.keeping())
+    }
+
+    /// Which load has states, integrals or events of its own, if one has.
+    pub(crate) fn keeping(&self) -> Option<String> {
         if self.system.internals().is_empty() {
             return None;
         }
@@ -205,9 +209,24 @@ impl Mechanism {
         }
         self.check_prescribed(start, &q, &v)?;
         let closed = assembly::assemble(tree, &self.centred, &q, &held, &Settings::default())?;
+        self.check_upright(&closed.q)?;
         let v = assembly::consistent_velocities(tree, &self.centred, &closed.q, &v, &given)?;
         let state = State { q: closed.q.clone(), v };
         Ok((state, closed))
+    }
+
+    /// Cut joints must be put together the right way round.
+    fn check_upright(&self, q: &[f64]) -> Result<(), StartError> {
+        let tree = self.system.tree();
+        let mut places = Positions::new(tree);
+        tree.positions(q, &mut places);
+        let mut pairs = self.loops.iter().zip(&self.centred);
+        match pairs.find(|(_, cut)| !cut.is_upright(&places)) {
+            Some((cut, _)) => Err(StartError::Reversed {
+                joint: cut.name.clone(),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// A start must not say of a prescribed coordinate what its motion does not.

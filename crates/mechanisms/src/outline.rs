@@ -1,7 +1,7 @@
 //! The topology of a linkage as text.
 
 use crate::clearance::Clearance;
-use crate::linkage::{JointItem, LinkHandle, Linkage};
+use crate::linkage::{CutItem, JointItem, LinkHandle, Linkage};
 use crate::point_load::Acts;
 use linkdyn_kinematics::Joint;
 use std::fmt::Write;
@@ -10,6 +10,13 @@ impl Linkage {
     /// The tree of links from the ground, one a line behind the joint that carries it and what sits in that, then the cut joints, then
     /// forces, moments and struts. A beam is one link; links without a way to the ground are left out.
     pub fn outline(&self) -> String {
+        if let Some(chosen) = self.with_cuts_chosen() {
+            return chosen.outline_of_tree();
+        }
+        self.outline_of_tree()
+    }
+
+    fn outline_of_tree(&self) -> String {
         let mut text = "ground\n".to_owned();
         let mut carried: Vec<Vec<usize>> = vec![Vec::new(); self.links.len() + 1];
         let place = |link: LinkHandle| link.0.map_or(0, |k| k + 1);
@@ -43,10 +50,7 @@ impl Linkage {
         }
         for cut in &self.cuts {
             let [one, two] = [&cut.predecessor, &cut.successor].map(|mount| self.outlined(mount.link, &beams));
-            let kind = match cut.rows {
-                None => with_clearance(kind(&cut.joint).to_owned(), cut.clearance.as_ref()),
-                Some(_) => "its own equations".into(),
-            };
+            let kind = described_cut(cut);
             let _ = writeln!(text, "cut: {one} - {} ({kind}) - {two}", cut.name);
         }
         for (name, acts, load) in &self.point_loads {
@@ -86,7 +90,7 @@ impl Linkage {
 }
 
 /// Kind of a joint of the tree, and what sits in it.
-fn described(item: &JointItem) -> String {
+pub(crate) fn described(item: &JointItem) -> String {
     let mut words = kind(&item.joint).to_owned();
     for (there, word) in [
         (!item.drives.is_empty(), "driven"),
@@ -100,6 +104,14 @@ fn described(item: &JointItem) -> String {
         }
     }
     with_clearance(words, item.clearance.as_ref())
+}
+
+/// Kind of a cut joint, and of its clearance.
+pub(crate) fn described_cut(item: &CutItem) -> String {
+    match item.rows {
+        None => with_clearance(kind(&item.joint).to_owned(), item.clearance.as_ref()),
+        Some(_) => "its own equations".into(),
+    }
 }
 
 fn with_clearance(words: String, clearance: Option<&Clearance>) -> String {

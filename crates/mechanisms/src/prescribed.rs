@@ -1,4 +1,4 @@
-//! PrescribedMotion motion of a joint: position or speed as a function of time.
+//! Prescribed motion of a joint: position or speed as a function of time.
 
 use crate::Spline;
 use linkdyn_dynamics::Guide;
@@ -9,8 +9,8 @@ use std::sync::Arc;
 /// Position, speed and acceleration as a function of time \[s\].
 pub type MotionFunction = Arc<dyn Fn(f64) -> [f64; 3] + Send + Sync>;
 
-/// What a joint with one coordinate is made to do, whatever force or torque that takes. The coordinate is an equation with a multiplier, which is
-/// that force; its power counts as work done on the mechanism.
+/// What a joint with one coordinate is made to do, whatever force or torque that takes. The coordinate gets an equation with a multiplier,
+/// which is that force; its power counts as work done on the mechanism.
 #[derive(Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]

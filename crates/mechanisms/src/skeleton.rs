@@ -2,6 +2,7 @@
 
 use crate::linkage::{LinkHandle, Linkage, Mount};
 use crate::mechanism::Mechanism;
+use crate::outline::{described, described_cut};
 use linkdyn_kinematics::{Joint, Pose, Positions};
 use nalgebra::Vector3;
 
@@ -34,6 +35,10 @@ pub struct PlacedJoint {
     pub name: String,
     /// What it is; axes are those of its frames.
     pub joint: Joint,
+    /// The same in words, with what is special about it.
+    pub kind: String,
+    /// Whether it has clearance.
+    pub clearance: bool,
     /// Indices of predecessor and successor in [`Skeleton::links`]; `None` is the ground.
     pub links: [Option<usize>; 2],
     /// Its frame on either side.
@@ -64,20 +69,36 @@ impl Linkage {
             .collect();
         let frame = |link: LinkHandle| link.0.map_or_else(Pose::identity, |k| links[k].frame);
         let on = |mount: &Mount| frame(mount.link) * mount.pose;
-        let carrying = self
-            .joints
-            .iter()
-            .map(|j| (&j.name, j.joint, &j.predecessor, &j.successor));
-        let cut = self
-            .cuts
-            .iter()
-            .map(|c| (&c.name, c.joint, &c.predecessor, &c.successor));
-        let joints = carrying.chain(cut).map(|(name, joint, one, two)| PlacedJoint {
-            name: name.clone(),
-            joint,
-            links: [one.link.0, two.link.0],
-            frames: [on(one), on(two)],
+        let carrying = self.joints.iter().map(|j| {
+            let kind = described(j);
+            (
+                &j.name,
+                j.joint,
+                kind,
+                j.clearance.is_some(),
+                [&j.predecessor, &j.successor],
+            )
         });
+        let cut = self.cuts.iter().map(|c| {
+            let kind = described_cut(c);
+            (
+                &c.name,
+                c.joint,
+                kind,
+                c.clearance.is_some(),
+                [&c.predecessor, &c.successor],
+            )
+        });
+        let joints = carrying
+            .chain(cut)
+            .map(|(name, joint, kind, clearance, mounts)| PlacedJoint {
+                name: name.clone(),
+                joint,
+                kind,
+                clearance,
+                links: mounts.map(|mount| mount.link.0),
+                frames: mounts.map(on),
+            });
         let end = |mount: &Mount| (mount.link.0, on(mount).origin);
         let struts = self.struts.iter().map(|(_, strut)| [end(&strut.from), end(&strut.to)]);
         Skeleton {

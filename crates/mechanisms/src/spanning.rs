@@ -1,5 +1,7 @@
 //! Which joints of a linkage carry its links and which are cut.
 
+use crate::linkage::{CutItem, JointItem, Linkage};
+use linkdyn_kinematics::Joint;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -83,4 +85,91 @@ pub fn spanning_tree(links: usize, joints: &[Edge]) -> Vec<Role> {
         open.extend(further.map(|(rank, ..)| Reverse(rank)));
     }
     roles
+}
+
+/// The same joint with exchanged sides and coordinates that mean the same, where there is one, and whether their order is the opposite.
+/// Coordinates of balls, planes and free links would have to say how the predecessor moves against the successor.
+pub(crate) fn backwards(joint: Joint) -> Option<(Joint, bool)> {
+    match joint {
+        Joint::Revolute { axis } => Some((Joint::Revolute { axis: -axis }, false)),
+        Joint::Prismatic { axis } => Some((Joint::Prismatic { axis: -axis }, false)),
+        Joint::Cylindrical { axis } => Some((Joint::Cylindrical { axis: -axis }, false)),
+        Joint::Screw { axis, pitch } => Some((Joint::Screw { axis: -axis, pitch }, false)),
+        Joint::Universal { first, second } => {
+            let (first, second) = (-second, -first);
+            Some((Joint::Universal { first, second }, true))
+        }
+        Joint::Fixed => Some((Joint::Fixed, false)),
+        _ => None,
+    }
+}
+
+impl Linkage {
+    /// The same linkage with as many joints cut as its loops need, where its joints make no tree; see [`Linkage::joint`]. What cannot be
+    /// made a tree so stays as it is, for [`Linkage::build`] to refuse.
+    pub(crate) fn with_cuts_chosen(&self) -> Option<Self> {
+        let mut carried = vec![false; self.links.len()];
+        let once = |joint: &JointItem| {
+            let place = joint.successor.link.0.and_then(|link| carried.get_mut(link));
+            place.is_some_and(|place| !std::mem::replace(place, true))
+        };
+        if self.joints.iter().all(once) {
+            return None;
+        }
+        let edge = |joint: &JointItem| Edge {
+            predecessor: joint.predecessor.link.0,
+            successor: joint.successor.link.0,
+            freedoms: joint.joint.speeds(),
+            cut: joint.must_carry().then_some(false),
+            // The offsets of a joint with clearance are those of its successor.
+            backwards: joint.clearance.is_none() && backwards(joint.joint).is_some(),
+        };
+        let edges: Vec<Edge> = self.joints.iter().map(edge).collect();
+        let mut chosen = self.clone();
+        chosen.joints.clear();
+        let roles = spanning_tree(self.links.len(), &edges);
+        for ((item, edge), role) in self.joints.iter().zip(&edges).zip(roles) {
+            match (role, backwards(item.joint).filter(|_| edge.backwards)) {
+                (Role::CarriesBackwards, Some((joint, exchanged))) => {
+                    chosen.joints.push(item.clone().turned_round(joint, exchanged));
+                }
+                (Role::Cut, _) if !item.must_carry() => chosen.cuts.push(CutItem {
+                    name: item.name.clone(),
+                    joint: item.joint,
+                    predecessor: item.predecessor,
+                    successor: item.successor,
+                    clearance: None,
+                    rows: None,
+                }),
+                _ => chosen.joints.push(item.clone()),
+            }
+        }
+        Some(chosen)
+    }
+}
+
+impl JointItem {
+    /// Whether something sits on its coordinates, or adds to them.
+    fn must_carry(&self) -> bool {
+        self.coordinate_names.is_some()
+            || !self.drives.is_empty()
+            || !self.springs.is_empty()
+            || self.friction.is_some()
+            || self.prescribed.is_some()
+            || self.limit.is_some()
+            || self.clearance.is_some()
+    }
+
+    /// The same as `joint` with exchanged sides, and coordinates in the opposite order where these are exchanged too.
+    fn turned_round(mut self, joint: Joint, exchanged: bool) -> Self {
+        std::mem::swap(&mut self.predecessor, &mut self.successor);
+        if exchanged {
+            let mut names = self.coordinates();
+            names.reverse();
+            self.coordinate_names = Some(names);
+            self.springs.reverse();
+        }
+        self.joint = joint;
+        self
+    }
 }

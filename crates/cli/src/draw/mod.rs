@@ -1,12 +1,14 @@
-//! `linkdyn draw`: a linkage at its start as a line drawing. Links are lines or plates between their joints, a joint has the symbol of
-//! its kind, the ground is hatched.
+//! `linkdyn draw`: a linkage at its start as a line drawing. Links are bars or plates between their joints, a joint has the symbol of its
+//! kind, the ground is hatched; spatial linkages are looked at from where least is hidden.
 
+mod labels;
+mod page;
+mod shape;
 mod symbols;
 mod view;
 
 use std::fs;
 
-use linkdyn_mechanisms::kinematics::Joint;
 use linkdyn_mechanisms::{PlacedJoint, Skeleton};
 use nalgebra::Vector3;
 use svg::Document;
@@ -14,19 +16,21 @@ use svg::node::element::{Group, Rectangle, Title};
 
 use crate::args::DrawArgs;
 use crate::errors::CliError;
-use crate::figure::svg_to_png;
+use crate::figure::{FONT, clean, svg_to_png};
 use crate::output;
 use crate::run::{Prepared, ready};
 use crate::scenes::{self, Variant};
-use view::View;
+use labels::Taken;
+use page::{Page, SIZE, Spot, crossing, length};
+use shape::{corners, heavy_end, is_drawn, place, slides};
+use symbols::{INK, RADIUS};
 
-/// Width and height of a picture, and the margin in it that symbols need.
-const SIZE: [f64; 2] = [420.0, 300.0];
-const MARGIN: f64 = 34.0;
 /// Pixels of a PNG for one of the picture.
 const PNG_SCALE: f64 = 2.0;
 /// Colours of the links one after the other; told apart by colour-blind readers.
 const COLOURS: [&str; 6] = ["#1b5ea8", "#d1451b", "#1d845b", "#7d3c98", "#b07d00", "#4a4a4a"];
+/// Half the width and height of the axes in the corner, with the letters and the arrow of gravity.
+const AXES: [f64; 2] = [40.0, 28.0];
 
 /// `linkdyn draw`.
 ///
@@ -38,7 +42,8 @@ pub fn draw(args: &DrawArgs) -> Result<(), CliError> {
         let message = format!("`{}` is no picture that can be drawn", args.out.display());
         return Err(CliError::usage(message).with_hint("give a name that ends in .svg or .png"));
     }
-    let prepared = ready(scenes::find(&args.scene)?.scene(&Variant::default())?)?;
+    let variant = Variant::new(&args.variant, false);
+    let prepared = ready(scenes::find(&args.scene)?.scene(&variant)?)?;
     let picture = picture(&prepared);
     let bytes = match kind {
         "png" => svg_to_png(&picture, PNG_SCALE)?,
@@ -53,86 +58,198 @@ pub fn draw(args: &DrawArgs) -> Result<(), CliError> {
     output::print(&format!("wrote {path}\n"))
 }
 
-/// The points that must fit into the picture: joints on both sides, ends of struts, and the centres of links with a single joint.
-fn points(skeleton: &Skeleton) -> impl Iterator<Item = Vector3<f64>> {
-    let drawn = skeleton.joints.iter().filter(|j| is_drawn(j));
-    let joints = drawn.flat_map(|j| j.frames.iter().map(|frame| frame.origin));
-    let struts = skeleton.struts.iter().flatten().map(|(_, point)| *point);
-    let links = (0..skeleton.links.len()).flat_map(|link| corners(skeleton, link));
-    joints.chain(struts).chain(links)
+/// What is drawn, and where.
+struct Sketch<'a> {
+    skeleton: &'a Skeleton,
+    page: Page,
+    /// What names must not cover.
+    taken: Taken,
 }
 
-/// A free joint is no part of a machine.
-fn is_drawn(joint: &PlacedJoint) -> bool {
-    !matches!(joint.joint, Joint::Free)
+fn colour(link: usize) -> &'static str {
+    COLOURS[link % COLOURS.len()]
 }
 
-fn slides(joint: &Joint) -> bool {
-    matches!(
-        joint,
-        Joint::Prismatic { .. } | Joint::Screw { .. } | Joint::Cylindrical { .. } | Joint::Planar { .. }
-    )
+fn title(text: &str) -> Title {
+    Title::new(clean(text))
 }
 
-/// Corners of a link: its joints and ends of struts, and its centre where these are one point only.
-fn corners(skeleton: &Skeleton, link: usize) -> Vec<Vector3<f64>> {
-    let mut corners: Vec<Vector3<f64>> = Vec::new();
-    for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
-        let sides = joint.links.iter().zip(&joint.frames);
-        corners.extend(
-            sides
-                .filter(|(side, _)| **side == Some(link))
-                .map(|(_, frame)| frame.origin),
-        );
+impl<'a> Sketch<'a> {
+    fn joints(&self) -> impl Iterator<Item = &'a PlacedJoint> + use<'a> {
+        self.skeleton.joints.iter().filter(|j| is_drawn(j))
     }
-    let ends = skeleton.struts.iter().flatten();
-    corners.extend(ends.filter(|(side, _)| *side == Some(link)).map(|(_, point)| *point));
-    let first = corners.first().copied();
-    let one_point = first.is_some_and(|first| corners.iter().all(|p| (p - first).norm() < 1e-9));
-    if one_point {
-        corners.extend(skeleton.links[link].centre);
+
+    fn at(&self, joint: &PlacedJoint) -> [f64; 2] {
+        self.page.place(place(self.skeleton, joint))
     }
-    corners
-}
 
-/// From points of the ground's axes to the page.
-struct Page {
-    view: View,
-    scale: f64,
-    shift: [f64; 2],
-}
-
-impl Page {
-    fn new(view: View, skeleton: &Skeleton) -> Self {
-        let seen: Vec<[f64; 2]> = points(skeleton).map(|p| view.see(p)).collect();
-        let range = |k: usize| {
-            let range = seen.iter().map(|p| p[k]);
-            range.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            })
-        };
-        let (x, y) = (range(0), range(1));
-        let fit = |(low, high): (f64, f64), size: f64| (size - 2.0 * MARGIN) / (high - low);
-        let scale = fit(x, SIZE[0]).min(fit(y, SIZE[1]));
-        // One point, or none.
-        let scale = if scale.is_finite() { scale } else { 1.0 };
-        let middle = |(low, high): (f64, f64)| if low <= high { 0.5 * (low + high) } else { 0.0 };
-        Self {
-            view,
-            scale,
-            shift: [0.5 * SIZE[0] - scale * middle(x), 0.5 * SIZE[1] + scale * middle(y)],
+    /// Brackets and beds, and in space the lines between them.
+    fn ground(&mut self, is_planar: bool) -> Group {
+        let mut symbols = Group::new();
+        let mut feet: Vec<Spot> = Vec::new();
+        let held = self.joints().filter(|joint| joint.links.contains(&None));
+        let ends = self.skeleton.struts.iter().flatten().filter(|(link, _)| link.is_none());
+        let joints = held.map(|joint| (place(self.skeleton, joint), Some(joint)));
+        for (point, joint) in joints.chain(ends.map(|(_, end)| (*end, None))) {
+            let foot = self.page.spot(point);
+            let at = [foot[0], foot[1]];
+            if feet.iter().any(|other| length(at, [other[0], other[1]]) < 1.0) {
+                continue;
+            }
+            feet.push(foot);
+            let slide = joint.and_then(|joint| Some(joint.frames[0].rotation * shape::axis(&joint.joint)?));
+            match slide.and_then(|axis| symbols::bed(at, self.page.direction(axis))) {
+                Some((bed, edge)) => {
+                    symbols = symbols.add(bed);
+                    self.taken.lines.push(edge);
+                }
+                None => {
+                    symbols = symbols.add(symbols::ground(at));
+                    self.taken.discs.push(([at[0], at[1] + 14.0], 13.0));
+                }
+            }
         }
+        if is_planar || feet.len() < 2 {
+            return symbols;
+        }
+        let (base, edges) = symbols::base(&feet);
+        self.taken.lines.extend(edges);
+        Group::new().add(base).add(symbols)
     }
 
-    fn place(&self, point: Vector3<f64>) -> [f64; 2] {
-        let [x, y] = self.view.see(point);
-        [self.shift[0] + self.scale * x, self.shift[1] - self.scale * y]
+    /// Bars and plates; where one crosses another the nearer one is whole. Their edges become obstacles.
+    fn links(&mut self) -> Group {
+        let mut group = Group::new();
+        let mut edges: Vec<(usize, [Spot; 2])> = Vec::new();
+        for (k, link) in self.skeleton.links.iter().enumerate() {
+            let seen: Vec<Spot> = corners(self.skeleton, k)
+                .into_iter()
+                .map(|p| self.page.spot(p))
+                .collect();
+            let (shape, own) = symbols::link(&seen, colour(k));
+            group = group.add(shape.add(title(&link.name)));
+            edges.extend(own.into_iter().map(|edge| (k, edge)));
+        }
+        for (k, (one, first)) in edges.iter().enumerate() {
+            for (two, second) in &edges[..k] {
+                if let (true, Some((at, first_is_nearer))) = (one != two, crossing(*first, *second)) {
+                    let (link, edge) = if first_is_nearer {
+                        (*one, *first)
+                    } else {
+                        (*two, *second)
+                    };
+                    group = group.add(symbols::bridge(at, edge, colour(link)));
+                }
+            }
+        }
+        for k in 0..self.skeleton.links.len() {
+            if let Some(centre) = heavy_end(self.skeleton, k) {
+                let at = self.page.place(centre);
+                group = group.add(symbols::mass(at, colour(k)));
+                self.taken.discs.push((at, symbols::MASS));
+            }
+        }
+        self.taken.lines.extend(edges.into_iter().map(|(_, edge)| edge));
+        group
     }
 
-    /// A direction, shorter than one where it points to the eye or away.
-    fn direction(&self, direction: Vector3<f64>) -> [f64; 2] {
-        let [x, y] = self.view.see(direction);
-        [x, -y]
+    fn struts(&mut self) -> Group {
+        let mut group = Group::new();
+        for ends in &self.skeleton.struts {
+            let ends = ends.map(|(_, end)| self.page.spot(end));
+            group = group.add(symbols::spring(ends.map(|end| [end[0], end[1]])));
+            // As wide as the teeth are.
+            let way = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
+            let size = f64::hypot(way[0], way[1]).max(1.0);
+            for side in [-8.0, 0.0, 8.0] {
+                let aside = [-side * way[1] / size, side * way[0] / size, 0.0];
+                self.taken
+                    .lines
+                    .push(ends.map(|end| [0, 1, 2].map(|k| end[k] + aside[k])));
+            }
+        }
+        group
+    }
+
+    fn joint_symbols(&mut self) -> Group {
+        let mut group = Group::new();
+        // Blocks below what sits on them.
+        let (blocks, others): (Vec<_>, Vec<_>) = self.joints().partition(|joint| slides(&joint.joint));
+        for joint in blocks.into_iter().chain(others) {
+            let at = self.at(joint);
+            let along = |axis: Vector3<f64>| self.page.direction(joint.frames[0].rotation * axis);
+            let successor = joint.links[1].or(joint.links[0]).map_or(INK, colour);
+            let mut symbol = symbols::joint(&joint.joint, at, along, successor);
+            if joint.clearance {
+                symbol = symbol.add(symbols::gap(at));
+            }
+            group = group.add(symbol.add(title(&format!("{} ({})", joint.name, joint.kind))));
+            self.taken.discs.push((at, RADIUS + 3.0));
+        }
+        group
+    }
+
+    /// Which axes are seen, and where gravity points.
+    fn axes(&mut self, gravity: Vector3<f64>) -> Group {
+        let middle = self.taken.corner(AXES);
+        let mut group = Group::new();
+        let seen = [(Vector3::x(), "x"), (Vector3::y(), "y"), (Vector3::z(), "z")];
+        let seen = seen.map(|(axis, name)| (self.page.direction(axis), name));
+        let seen: Vec<_> = seen.iter().filter(|([x, y, _], _)| f64::hypot(*x, *y) > 0.1).collect();
+        // Letters stand beyond the tips; all of it is put in the middle of the left part.
+        let letter = |[x, y, _]: &Spot, k: usize| [x, y][k] * (20.0 + 8.0 / f64::hypot(*x, *y));
+        let from = [0, 1].map(|k| {
+            let places = seen.iter().map(|(axis, _)| letter(axis, k));
+            let (low, high) = places.fold((0.0_f64, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+            middle[k] - 0.5 * (low + high) - if k == 0 { 9.0 } else { 0.0 }
+        });
+        for (axis, name) in seen {
+            let at = [0, 1].map(|k| from[k] + letter(axis, k));
+            let arrow = symbols::arrow(from, [20.0 * axis[0], 20.0 * axis[1]]);
+            group = group.add(arrow).add(labels::letters(name, at, INK));
+        }
+        if let Some(down) = gravity.try_normalize(1e-9) {
+            let [x, y, _] = self.page.direction(down);
+            let from = [middle[0] + AXES[0] - 5.0, middle[1] - 10.0 * y];
+            group = group
+                .add(symbols::arrow(from, [20.0 * x, 20.0 * y]))
+                .add(labels::letters("g", [from[0] - 8.0, from[1] + 8.0 * y], INK));
+        }
+        group
+    }
+
+    /// Names of joints in ink and of links in their colours, those of joints in one place together.
+    fn names(&mut self) -> Group {
+        let mut group = Group::new();
+        let mut there: Vec<([f64; 2], String)> = Vec::new();
+        for joint in self.joints() {
+            let at = self.at(joint);
+            let clearance = if joint.clearance { " (clearance)" } else { "" };
+            let name = format!("{}{clearance}", joint.name);
+            match there.iter_mut().find(|(other, _)| length(*other, at) < 1.0) {
+                Some((_, names)) => *names = format!("{names}, {name}"),
+                None => there.push((at, name)),
+            }
+        }
+        for (at, names) in there {
+            if let Some(text) = self.taken.around(&names, at, RADIUS + 2.0, INK) {
+                group = group.add(text);
+            }
+        }
+        for (k, link) in self.skeleton.links.iter().enumerate() {
+            let seen: Vec<Spot> = corners(self.skeleton, k)
+                .into_iter()
+                .map(|p| self.page.spot(p))
+                .collect();
+            let (_, edges) = symbols::link(&seen, colour(k));
+            let placed = edges
+                .into_iter()
+                .find_map(|edge| self.taken.along(&link.name, edge, colour(k)));
+            if let Some(text) = placed {
+                group = group.add(text);
+            }
+        }
+        group
     }
 }
 
@@ -140,45 +257,21 @@ impl Page {
 fn picture(prepared: &Prepared) -> String {
     let linkage = &prepared.scene.linkage;
     let skeleton = linkage.skeleton(&prepared.mechanism, &prepared.start.q);
-    let page = Page::new(View::of(&skeleton, Vector3::from(linkage.gravity())), &skeleton);
-    let mut ground = Group::new();
-    for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
-        let [one, two] = joint.frames.map(|frame| page.place(frame.origin));
-        match joint.links {
-            // What slides on the ground stands on it wherever it is.
-            [None, _] if slides(&joint.joint) => ground = ground.add(symbols::ground(two)),
-            [None, _] => ground = ground.add(symbols::ground(one)),
-            [_, None] => ground = ground.add(symbols::ground(two)),
-            _ => {}
-        }
-    }
-    for (_, end) in skeleton.struts.iter().flatten().filter(|(link, _)| link.is_none()) {
-        ground = ground.add(symbols::ground(page.place(*end)));
-    }
-    let mut links = Group::new();
-    for (k, link) in skeleton.links.iter().enumerate() {
-        let seen: Vec<[f64; 2]> = corners(&skeleton, k).into_iter().map(|p| page.place(p)).collect();
-        let colour = COLOURS[k % COLOURS.len()];
-        links = links.add(symbols::link(&seen, colour).add(Title::new(link.name.as_str())));
-        let joints = skeleton
-            .joints
-            .iter()
-            .filter(|j| is_drawn(j) && j.links.contains(&Some(k)));
-        if let (1, Some(centre)) = (joints.count(), link.centre) {
-            links = links.add(symbols::mass(page.place(centre), colour));
-        }
-    }
-    let mut struts = Group::new();
-    for ends in &skeleton.struts {
-        struts = struts.add(symbols::spring(ends.map(|(_, end)| page.place(end))));
-    }
-    let mut joints = Group::new();
-    for joint in skeleton.joints.iter().filter(|j| is_drawn(j)) {
-        let [one, two] = joint.frames.map(|frame| page.place(frame.origin));
-        let places = [if joint.links[0].is_none() { two } else { one }, two];
-        let along = |axis: Vector3<f64>| page.direction(joint.frames[0].rotation * axis);
-        joints = joints.add(symbols::joint(&joint.joint, places, along).add(Title::new(joint.name.as_str())));
-    }
+    let gravity = Vector3::from(linkage.gravity());
+    let mut sketch = Sketch {
+        page: Page::best(&skeleton, gravity),
+        skeleton: &skeleton,
+        taken: Taken::default(),
+    };
+    let is_planar = view::View::planar(&skeleton, gravity).is_some();
+    let layers = [
+        sketch.ground(is_planar),
+        sketch.links(),
+        sketch.struts(),
+        sketch.joint_symbols(),
+        sketch.axes(gravity),
+        sketch.names(),
+    ];
     let white = Rectangle::new()
         .set("width", SIZE[0])
         .set("height", SIZE[1])
@@ -188,7 +281,9 @@ fn picture(prepared: &Prepared) -> String {
         .set("height", SIZE[1])
         .set("viewBox", (0, 0, SIZE[0], SIZE[1]))
         .set("role", "img")
-        .add(Title::new(prepared.scene.name.as_str()))
+        .set("font-family", format!("{FONT}, Verdana, Helvetica, sans-serif"))
+        .add(title(&prepared.scene.name))
         .add(white);
-    document.add(ground).add(links).add(struts).add(joints).to_string()
+    let document = layers.into_iter().fold(document, |document, layer| document.add(layer));
+    document.to_string()
 }

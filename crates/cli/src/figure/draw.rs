@@ -316,7 +316,7 @@ fn text(content: &str, size: f64, (x, y): (f64, f64), anchor: &str) -> Text {
 }
 
 /// Text without control characters, for which XML has no place.
-fn clean(text: &str) -> String {
+pub(crate) fn clean(text: &str) -> String {
     text.chars()
         .map(|c| {
             if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {

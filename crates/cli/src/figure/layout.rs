@@ -279,7 +279,7 @@ fn widened((low, high): (f64, f64), span: f64) -> (f64, f64) {
 }
 
 /// Width in pixels that a text takes at most, nearly.
-pub(super) fn text_width(text: &str, size: f64) -> f64 {
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let narrow = |c: char| ".,·il()¹²³⁻".contains(c) || matches!(c, ' ' | '⁰'..='⁹' | '₀'..='₉');
     let combining = |c: char| ('\u{300}'..='\u{36f}').contains(&c);
     text.chars()

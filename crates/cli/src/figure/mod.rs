@@ -25,6 +25,9 @@ mod simplify;
 mod strokes;
 mod ticks;
 
+pub(crate) use draw::clean;
+pub(crate) use layout::text_width;
+pub(crate) use raster::FONT;
 pub use raster::svg_to_png;
 
 /// A title, a legend and panels in a grid.

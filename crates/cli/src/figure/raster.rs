@@ -7,7 +7,7 @@ use resvg::{tiny_skia, usvg};
 use super::FigureError;
 
 /// The typeface of all pictures; the program carries it.
-pub(super) const FONT: &str = "DejaVu Sans";
+pub(crate) const FONT: &str = "DejaVu Sans";
 
 /// Largest number of pixels of a PNG: 400 MB in memory.
 const MOST_PIXELS: f64 = 1e8;

@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use linkdyn_mechanisms::analysis::equilibrium::{Settings, settled};
 use linkdyn_mechanisms::dynamics::{Formulation, ReactionSolver};
 use linkdyn_mechanisms::integrators::Integration;
 use linkdyn_mechanisms::{MOST_ROWS, Mechanism, RunError, Scene, Seen, Simulation, State, run_watched};
@@ -42,7 +43,7 @@ pub(crate) struct Prepared {
 /// Wrong usage, a scene that cannot start, a run that ends early (its rows are written), a folder that cannot be written.
 pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let variant = Variant::new(&args.variant, args.as_published);
-    let prepared = prepare(&args.scene, &variant, args.friction_sweeps, args.formulation)?;
+    let prepared = prepare_run(args, &variant)?;
     let plan = Plan::new(args, &prepared)?;
     let until = args.until.unwrap_or(prepared.scene.until);
     let every = args.every.or(prepared.scene.settings.every);
@@ -141,6 +142,30 @@ pub(crate) fn prepare(
     ready(scene)
 }
 
+/// The same for a run, from equilibrium where that is asked for.
+fn prepare_run(args: &RunArgs, variant: &Variant) -> Result<Prepared, CliError> {
+    let mut prepared = prepare(&args.scene, variant, args.friction_sweeps, args.formulation)?;
+    let Some(held) = &args.equilibrium else {
+        return Ok(prepared);
+    };
+    let settings = Settings {
+        held: match held.as_str() {
+            "" => vec![prepared.scene.crank.clone()],
+            "none" => Vec::new(),
+            names => names.split(',').map(|name| name.trim().to_owned()).collect(),
+        },
+        ..Settings::default()
+    };
+    let found = settled(&prepared.mechanism, &prepared.scene.start, &settings);
+    prepared.start = found.map_err(|error| {
+        CliError::failed(format!("scene `{}` has no equilibrium to start from", args.scene)).with_source(error)
+    })?;
+    // The manifest tells the scene as it is run.
+    let names = prepared.mechanism.coordinate_names().map(str::to_owned);
+    prepared.scene.start.positions = names.zip(prepared.start.q.iter().copied()).collect();
+    Ok(prepared)
+}
+
 /// Builds a scene and closes its loops.
 pub(crate) fn ready(scene: Scene) -> Result<Prepared, CliError> {
     let wrong = |what: &str| CliError::usage(format!("scene `{}` {what}", scene.name));
@@ -215,7 +240,7 @@ fn compare(
         return Vec::new();
     };
     let others = entry.beside(variant).into_iter().filter_map(|other| {
-        let prepared = prepare(&args.scene, &other, args.friction_sweeps, args.formulation).ok()?;
+        let prepared = prepare_run(args, &other).ok()?;
         let (record, ..) = simulate(&prepared, plan, (reached, grid.1), |_| flow(interrupt)).ok()?;
         Some((other, record))
     });

@@ -1,7 +1,8 @@
 //! Backward differentiation: its orders, stability, linear algebra and failures.
 
 use linkdyn_integrators::{
-    Bdf, EvalError, Integration, IntegrationError, Method, Ode, Progress, Settings, SettingsError, Statistics,
+    Bdf, EvalError, Integration, IntegrationError, Method, Ode, Progress, SecondOrder, Settings, SettingsError,
+    Statistics,
 };
 
 use crate::problems::{Counting, Damped, Function, Kink, Pleiades, distance, finish, solve};
@@ -96,7 +97,7 @@ fn steps_follow_the_slow_solution() {
 }
 
 /// x'' = −ω² (x − sin t) − 2 d (x' − cos t) − sin t, ω = 1000: a vibration that is hardly damped about the solution sin t.
-fn vibration(d: f64) -> impl Ode {
+fn vibration(d: f64) -> impl SecondOrder {
     Function(2, move |t: f64, y: &[f64], dy: &mut [f64]| {
         let (x, v) = (y[0] - t.sin(), y[1] - t.cos());
         (dy[0], dy[1]) = (y[1], -1e6 * x - 2.0 * d * v - t.sin());

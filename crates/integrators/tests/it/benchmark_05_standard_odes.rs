@@ -2,11 +2,11 @@
 
 use linkdyn_integrators::{Bdf, Method, Radau5, Settings, Statistics};
 
-use crate::problems::{Function, solve};
+use crate::problems::{Any, Function, solve};
 use crate::standard_odes::{HIRES, ROBERTSON, Standard, VAN_DER_POL};
 
 /// Digits of the worst component at the end, relative to its value.
-pub fn digits(problem: &Standard, method: impl Method<Standard>, relative: f64) -> (f64, Statistics) {
+pub fn digits(problem: &Standard, method: impl Method<Any<'static>> + 'static, relative: f64) -> (f64, Statistics) {
     let settings = Settings {
         first_step: Some(1e-6),
         ..Settings::tolerances(relative, problem.ratio * relative)

@@ -1,11 +1,10 @@
 //! Order of each method, of its solution and of its interpolation.
 
 use linkdyn_integrators::{
-    Adams, Bdf, Corrector, Dop853, DormandPrince5, Integration, Method, Newmark, Ode, Progress, Radau5, Rk4,
-    SecondOrder, Settings,
+    Adams, Bdf, Corrector, Dop853, DormandPrince5, Method, Newmark, Progress, Radau5, Rk4, SecondOrder, Settings,
 };
 
-use crate::problems::{Damped, Kink, Rational, boxed, distance, solve};
+use crate::problems::{Any, Damped, Kink, Rational, begin, distance, solve};
 
 /// Least-squares slope of log₂ error over halvings of the step.
 fn slope(errors: &[f64]) -> f64 {
@@ -20,7 +19,7 @@ fn slope(errors: &[f64]) -> f64 {
 }
 
 /// Errors at the end for `halvings` + 1 step sizes.
-fn errors<P: Ode, M: Method<P>>(
+fn errors<P: SecondOrder + 'static, M: Method<Any<'static>> + 'static>(
     problem: impl Fn() -> P,
     method: impl Fn(f64) -> M,
     y0: &[f64],
@@ -38,7 +37,7 @@ fn errors<P: Ode, M: Method<P>>(
 /// Orders on the three problems.
 fn orders<M>(method: impl Fn(f64) -> M, first: [f64; 3]) -> [f64; 3]
 where
-    M: Method<Damped> + Method<Kink> + Method<Rational>,
+    M: Method<Any<'static>> + 'static,
 {
     [
         slope(&errors(
@@ -120,14 +119,13 @@ fn newmark_of_other_coefficients() {
 }
 
 /// Largest error of the interpolation at five places in each step of the run.
-fn dense_error<P: SecondOrder, M: Method<P>>(
-    problem: P,
-    method: M,
+fn dense_error(
+    problem: impl SecondOrder + 'static,
+    method: impl Method<Any<'static>> + 'static,
     y0: &[f64],
     exact: impl Fn(f64) -> [f64; 3],
 ) -> f64 {
-    let mut run =
-        Integration::new(problem, boxed(method), 0.0, y0, Settings::tolerances(1e-9, 1e-9)).expect("good settings");
+    let mut run = begin(problem, method, 0.0, y0, Settings::tolerances(1e-9, 1e-9)).expect("good settings");
     let (mut y, mut worst) = ([0.0; 3], 0.0_f64);
     loop {
         let progress = run.advance(1.5).expect("smooth");

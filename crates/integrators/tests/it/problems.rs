@@ -1,7 +1,9 @@
 //! Problems with known solutions, and a wrapper that counts.
 
 use crate::standard_odes::{PLEIADES, PLEIADES_END, PLEIADES_START};
-use linkdyn_integrators::{EvalError, Integration, Method, Ode, Progress, SecondOrder, Settings, Statistics};
+use linkdyn_integrators::{
+    EvalError, Integration, IntegrationError, Method, Ode, Progress, SecondOrder, Settings, Statistics,
+};
 
 /// x'' + 2 D x' + x = 0 with D = 0.1, and the integral of x.
 pub struct Damped;
@@ -107,6 +109,12 @@ impl Ode for Pleiades {
     }
 }
 
+impl SecondOrder for Pleiades {
+    fn pairs(&self) -> usize {
+        0
+    }
+}
+
 /// Any right-hand side given as a function of t and y.
 pub struct Function<F>(pub usize, pub F);
 
@@ -116,6 +124,15 @@ impl<F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), EvalError>> Ode for Functio
     }
     fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
         (self.1)(t, y, dy)
+    }
+}
+
+impl<F> SecondOrder for Function<F>
+where
+    Self: Ode,
+{
+    fn pairs(&self) -> usize {
+        0
     }
 }
 
@@ -189,16 +206,33 @@ pub fn finish<P: Ode, M: Method<P>>(run: &mut Integration<P, M>, end: f64) -> Ve
 }
 
 /// State at `end` with these settings.
-pub fn solve<P: Ode, M: Method<P>>(
-    problem: P,
-    method: M,
+pub fn solve<'a>(
+    problem: impl SecondOrder + 'a,
+    method: impl Method<Any<'a>> + 'a,
     y0: &[f64],
     end: f64,
     settings: Settings,
 ) -> (Vec<f64>, Statistics) {
-    let mut run = Integration::new(problem, boxed(method), 0.0, y0, settings).expect("good settings");
+    let mut run = begin(problem, method, 0.0, y0, settings).expect("good settings");
     let y = finish(&mut run, end);
     (y, run.statistics())
+}
+
+/// Any problem behind a pointer: methods are then compiled once, not once for each problem.
+pub type Any<'a> = Box<dyn SecondOrder + 'a>;
+
+/// A run of any problem by any method.
+pub type Run<'a> = Integration<Any<'a>, Box<dyn Method<Any<'a>> + 'a>>;
+
+/// Begins a run.
+pub fn begin<'a>(
+    problem: impl SecondOrder + 'a,
+    method: impl Method<Any<'a>> + 'a,
+    t0: f64,
+    y0: &[f64],
+    settings: Settings,
+) -> Result<Run<'a>, IntegrationError> {
+    Integration::new(Box::new(problem), Box::new(method), t0, y0, settings)
 }
 
 /// A method behind a pointer: the driver is then compiled once for a problem, not once for each method too.

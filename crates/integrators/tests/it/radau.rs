@@ -137,6 +137,12 @@ impl<P: Ode> Ode for Told<P> {
     }
 }
 
+impl<P: Ode> SecondOrder for Told<P> {
+    fn pairs(&self) -> usize {
+        0
+    }
+}
+
 /// Three masses on stiffening springs between walls, damped; with a variable of first order, the work of the dampers and the area
 /// under the first mass.
 pub struct Chain;
@@ -245,6 +251,12 @@ impl Ode for Given {
         assert!(matrix.iter().all(|entry| *entry == 0.0));
         (matrix[1], matrix[3], matrix[8]) = (1.0, self.0 * (6.0 * y[0] * y[0] - 2.0), -2.0 * self.0 * y[2]);
         Ok(true)
+    }
+}
+
+impl SecondOrder for Given {
+    fn pairs(&self) -> usize {
+        0
     }
 }
 

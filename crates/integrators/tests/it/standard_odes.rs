@@ -1,6 +1,6 @@
 //! Problems of the test set for IVP solvers (benchmark 05-standard-odes) as data, for tests here and for comparisons elsewhere.
 
-use linkdyn_integrators::{EvalError, Ode};
+use linkdyn_integrators::{EvalError, Ode, SecondOrder};
 
 /// A problem with its solution at the end.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +36,12 @@ impl Ode for Standard {
     fn rhs(&mut self, t: f64, y: &[f64], dy: &mut [f64]) -> Result<(), EvalError> {
         (self.rhs)(t, y, dy);
         Ok(())
+    }
+}
+
+impl SecondOrder for Standard {
+    fn pairs(&self) -> usize {
+        0
     }
 }
 

@@ -1,12 +1,12 @@
 //! What a tolerance buys.
 
-use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Integration, Method, Ode, Settings};
+use linkdyn_integrators::{Adams, Dop853, DormandPrince5, Method, SecondOrder, Settings};
 
 use crate::methods::{adaptive, nth};
-use crate::problems::{Damped, Function, Kink, Pleiades, boxed, distance, finish, solve};
+use crate::problems::{Any, Damped, Function, Kink, Pleiades, begin, distance, finish, solve};
 
 /// Two digits more of tolerance must buy at least one digit of accuracy, down to rounding.
-fn responds<P: Ode, M: Method<P>>(
+fn responds<P: SecondOrder + 'static, M: Method<Any<'static>> + 'static>(
     problem: impl Fn() -> P,
     method: impl Fn() -> M,
     y0: &[f64],
@@ -36,7 +36,7 @@ fn error_follows_tolerance() {
 
 #[test]
 fn pleiades() {
-    fn error<M: Method<Pleiades>>(method: M, tolerance: f64) -> f64 {
+    fn error<M: Method<Any<'static>> + 'static>(method: M, tolerance: f64) -> f64 {
         let settings = Settings::tolerances(tolerance, tolerance);
         distance(
             &solve(Pleiades, method, &Pleiades::START, 3.0, settings).0,
@@ -55,7 +55,7 @@ fn pleiades() {
 /// The work of the runs, so that a change that costs work shows.
 #[test]
 fn work() {
-    fn work<M: Method<Pleiades>>(method: M) -> u64 {
+    fn work<M: Method<Any<'static>> + 'static>(method: M) -> u64 {
         solve(
             Pleiades,
             method,
@@ -101,9 +101,9 @@ fn each_component_has_its_own_tolerance() {
 
 #[test]
 fn backward_and_back() {
-    fn there_and_back<M: Method<Damped>>(method: M) {
+    fn there_and_back<M: Method<Any<'static>> + 'static>(method: M) {
         let settings = Settings::tolerances(1e-11, 1e-12);
-        let mut run = Integration::new(Damped, boxed(method), 0.0, &Damped::START, settings).expect("good settings");
+        let mut run = begin(Damped, method, 0.0, &Damped::START, settings).expect("good settings");
         assert!(distance(&finish(&mut run, 5.0), &Damped::exact(5.0)) < 1e-9);
         assert!(distance(&finish(&mut run, -2.0), &Damped::exact(-2.0)) < 1e-9);
         let (from, to) = run.last_step();

@@ -10,8 +10,8 @@ use super::error::AnalysisError;
 use crate::mechanism::Mechanism;
 use crate::simulation::OFF_THE_LOOP;
 use linkdyn_dynamics::{Instant, MotionTerms, Reaction, Workspace};
-use linkdyn_kinematics::Positions;
 use linkdyn_kinematics::assembly::{self, SingularValues};
+use linkdyn_kinematics::{Positions, Velocities};
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's iterations of friction and reactions.
@@ -29,6 +29,8 @@ pub(super) struct Balance<'a> {
     pub work: Workspace,
     terms: MotionTerms,
     positions: Positions,
+    /// Speeds that are kept at zero, each by an equation behind those of the loops.
+    held: Vec<usize>,
     /// Equations from which the dependent speeds follow.
     rows: Vec<usize>,
     dependent: Vec<usize>,
@@ -59,33 +61,72 @@ pub(super) struct Moving {
 pub(super) struct Needed {
     /// On the independent speeds \[N m, N\].
     pub forces: DVector<f64>,
+    /// Of the loops, then of the prescribed motions.
     pub multipliers: DVector<f64>,
     /// Generalised forces of friction, with the sign in which they act.
     pub friction: Vec<f64>,
 }
 
 impl<'a> Balance<'a> {
-    /// Scratch for `mechanism`.
+    /// Scratch for `mechanism`, whose loads must have no states of their own. Prescribed motions are left out.
     pub fn new(mechanism: &'a Mechanism) -> Result<Self, AnalysisError> {
-        if let Some(what) = mechanism.stateful() {
-            return Err(AnalysisError::Internals { what });
+        match mechanism.keeping() {
+            Some(what) => Err(AnalysisError::Internals { what }),
+            None => Ok(Self::kinematic(mechanism)),
         }
-        let system = mechanism.system();
+    }
+
+    /// The same with speeds that are kept at zero, whatever force that takes: those of prescribed motions, then `more`.
+    pub fn holding(mechanism: &'a Mechanism, more: impl IntoIterator<Item = usize>) -> Result<Self, AnalysisError> {
+        let mut held: Vec<usize> = mechanism.system().guided().iter().map(|guided| guided.speed).collect();
+        for speed in more {
+            if !held.contains(&speed) {
+                held.push(speed);
+            }
+        }
         Ok(Self {
+            held,
+            ..Self::new(mechanism)?
+        })
+    }
+
+    /// Name of the first speed that is held.
+    pub fn first_held(&self) -> Option<&'a str> {
+        self.held.first().map(|&speed| self.mechanism.speeds[speed].as_str())
+    }
+
+    /// A flag a speed: those that are held.
+    pub fn held_flags(&self) -> Vec<bool> {
+        let speeds = self.mechanism.system().tree().speeds();
+        (0..speeds).map(|speed| self.held.contains(&speed)).collect()
+    }
+
+    /// Scratch for motion without forces: loads and prescribed motions do not count.
+    pub fn kinematic(mechanism: &'a Mechanism) -> Self {
+        let system = mechanism.system();
+        Self {
             work: Workspace::new(system),
             terms: MotionTerms::new(system),
             positions: Positions::new(system.tree()),
+            held: Vec::new(),
             rows: Vec::new(),
             dependent: Vec::new(),
             independent: Vec::new(),
             mechanism,
-        })
+        }
     }
 
+    /// Gradient of the loops, with a row for each speed that is held.
     fn gradient(&mut self, q: &[f64]) -> DMatrix<f64> {
         let system = self.mechanism.system();
         system.tree().positions(q, &mut self.positions);
-        assembly::gradient(system.tree(), system.closures(), &self.positions)
+        let loops = assembly::gradient(system.tree(), system.closures(), &self.positions);
+        let first = loops.nrows();
+        let mut all = loops.resize_vertically(first + self.held.len(), 0.0);
+        for (k, &speed) in self.held.iter().enumerate() {
+            all[(first + k, speed)] = 1.0;
+        }
+        all
     }
 
     /// Chooses independent speeds at `q`: those `driven`, or by elimination where none is.
@@ -153,7 +194,9 @@ impl<'a> Balance<'a> {
         let system = self.mechanism.system();
         let written = system.write_terms(&Instant::new(t, q, v.as_slice()), &mut self.work, &mut self.terms);
         written.map_err(|cause| self.mechanism.explain(cause))?;
-        let gamma = DMatrix::from_fn(self.rows.len(), 1, |i, _| self.terms.gamma[self.rows[i]]);
+        // What is held has none.
+        let gamma = |row: usize| self.terms.gamma.get(row).copied().unwrap_or(0.0);
+        let gamma = DMatrix::from_fn(self.rows.len(), 1, |i, _| gamma(self.rows[i]));
         let followers = solve(gamma + of_independent * &second).ok_or_else(|| self.no_motion())?;
         for (k, &speed) in self.independent.iter().enumerate() {
             a[speed] = second[k];
@@ -181,7 +224,7 @@ impl<'a> Balance<'a> {
     /// All forces, for the last [`Balance::moving`].
     pub fn needed(&mut self, moving: &Moving) -> Result<Needed, AnalysisError> {
         let system = self.mechanism.system();
-        let (n, m) = (system.tree().speeds(), system.equations());
+        let (n, m) = (system.tree().speeds(), self.terms.gamma.len());
         // What is left for the loops of a force on the speeds, once the independent ones are held.
         let split = |force: &DVector<f64>| {
             let share = moving.tangent.tr_mul(force);
@@ -191,11 +234,16 @@ impl<'a> Balance<'a> {
             }
             (share, rest)
         };
-        let transposed = DMatrix::from_column_slice(n, m, &self.terms.gradient);
+        let mut transposed = DMatrix::zeros(n, m + self.held.len());
+        transposed.columns_mut(0, m).copy_from_slice(&self.terms.gradient);
+        for (k, &speed) in self.held.iter().enumerate() {
+            transposed[(speed, m + k)] = 1.0;
+        }
         let loops = SingularValues::new(&transposed);
-        let shortest = |rest: &DVector<f64>| match m {
-            0 => DVector::zeros(0),
-            _ => loops.solve(rest),
+        // Prescribed motions that are left out take no force; that of what else is held is not among the multipliers.
+        let shortest = |rest: &DVector<f64>| match transposed.ncols() {
+            0 => DVector::zeros(system.equations()),
+            _ => loops.solve(rest).resize_vertically(system.equations(), 0.0),
         };
         let (mut forces, rest) = split(&self.lacking(&moving.a));
         let mut multipliers = shortest(&rest);
@@ -348,6 +396,16 @@ impl<'a> Balance<'a> {
         Ok(DMatrix::from_columns(&columns))
     }
 
+    /// Rates of all speeds when the mechanism is let go at `(t, q)` from rest, where friction is none.
+    pub fn let_go(&mut self, (t, q): (f64, &[f64])) -> Result<Vec<f64>, AnalysisError> {
+        let still = vec![0.0; self.independent.len()];
+        let mass = self.mass((t, q), (&still, &still))?;
+        let moving = self.moving(t, q, &still, &still)?;
+        let pushed = mass.lu().solve(&-self.forces(&moving)?);
+        let second = pushed.ok_or(AnalysisError::Eigenvalues("a freedom moves no mass"))?;
+        Ok(self.moving(t, q, &still, second.as_slice())?.a.as_slice().to_vec())
+    }
+
     /// Names of the independent speeds.
     pub fn independent_names(&self) -> Vec<String> {
         let speeds = self.independent.iter();
@@ -372,8 +430,8 @@ pub(super) fn check(mechanism: &Mechanism, q: &[f64], v: Option<&[f64]>) -> Resu
             return Err(number(format!("{what}[{index}]"), values[index], "a finite number"));
         }
     }
-    let still = vec![0.0; tree.speeds()];
-    let (residual, rate) = system.violation(0.0, q, v.unwrap_or(&still), &mut Workspace::new(system));
+    // Loops alone: what is asked may be of another time than the one at which prescribed motions are there.
+    let (residual, rate) = violation(mechanism, q, v);
     let fastest = v.unwrap_or(&[]).iter().fold(1.0, |s, x| f64::max(s, x.abs()));
     // At rest loops stay closed, but prescribed motions may have to go on.
     let worst = v.map_or(residual, |_| residual.max(rate / fastest));
@@ -384,6 +442,30 @@ pub(super) fn check(mechanism: &Mechanism, q: &[f64], v: Option<&[f64]>) -> Resu
         });
     }
     Ok(())
+}
+
+/// Largest residual of the loops, and largest rate of one.
+fn violation(mechanism: &Mechanism, q: &[f64], v: Option<&[f64]>) -> (f64, f64) {
+    let system = mechanism.system();
+    let tree = system.tree();
+    let (mut positions, mut velocities) = (Positions::new(tree), Velocities::new(tree));
+    tree.positions(q, &mut positions);
+    let (mut residual, mut rate) = (0.0, 0.0);
+    let worst = |rows: &[f64], so_far: f64| {
+        rows.iter()
+            .fold(so_far, |s, x| if x.abs() <= s || s.is_nan() { s } else { x.abs() })
+    };
+    for closure in system.closures() {
+        let mut rows = vec![0.0; closure.equations()];
+        closure.residual(&positions, &mut rows);
+        residual = worst(&rows, residual);
+        if let Some(v) = v {
+            tree.velocities(&positions, v, &mut velocities);
+            closure.rate(&positions, &velocities, &mut rows);
+            rate = worst(&rows, rate);
+        }
+    }
+    (residual, rate)
 }
 
 /// A number out of range.

@@ -4,8 +4,7 @@ use super::balance::number;
 use super::error::AnalysisError;
 use crate::mechanism::{Mechanism, Start};
 use linkdyn_kinematics::assembly::{self, Branch, Settings};
-use linkdyn_kinematics::{Closure, Freedom, Joint, Pose, Positions, Row};
-use nalgebra::Vector3;
+use linkdyn_kinematics::{Closure, Freedom, Joint, Pose, Positions};
 use std::f64::consts::PI;
 
 /// Entries of rotation matrices, and lengths over the mechanism's size, closer than this are the same: Newton's method leaves 1e-14,
@@ -62,7 +61,8 @@ pub struct Branches {
     pub singles: usize,
 }
 
-/// Closes the loops from many guesses, with what `start` holds held at its values; all else in it is ignored. Guesses are a Kronecker
+/// Closes the loops from many guesses, with what `start` holds held at its values, and prescribed coordinates where they are at t = 0; all
+/// else in it is ignored. Guesses are a Kronecker
 /// sequence with the powers of the root of `x^(d+1) = x + 1` in d dimensions, which fills the box of all turns and slides evenly.
 /// A search proves nothing about positions that it did not find.
 ///
@@ -80,7 +80,10 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
     for (name, value) in &start.positions {
         base[mechanism.index(name)?] = *value;
     }
-    let held = mechanism.held(&start.held)?;
+    let mut held = mechanism.held(&start.held)?;
+    for guided in mechanism.system().guided().iter().filter(|guided| !guided.speed_only) {
+        (base[guided.coordinate], held[guided.speed]) = (guided.guide.at(0.0)[0], true);
+    }
     let size = size(mechanism);
     let reach = search.reach.unwrap_or(size);
     let free: Vec<usize> = (0..tree.speeds()).filter(|&speed| !held[speed]).collect();
@@ -99,7 +102,7 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
             continue;
         };
         tree.positions(&closed.q, &mut places);
-        if !mechanism.centred.iter().all(|cut| is_upright(cut, &places)) {
+        if !mechanism.centred.iter().all(|cut| cut.is_upright(&places)) {
             reversed += 1;
             continue;
         }
@@ -131,11 +134,8 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
                 .collect::<Vec<_>>()
                 .join(", ")
         };
-        let driven = if start.held.is_empty() {
-            "nothing".to_owned()
-        } else {
-            names(true)
-        };
+        let driven = Some(names(true)).filter(|names| !names.is_empty());
+        let driven = driven.unwrap_or_else(|| "nothing".to_owned());
         return Err(AnalysisError::Undetermined {
             driven,
             free: names(false),
@@ -201,28 +201,6 @@ fn same(a: &[Pose], b: &[Pose], size: f64) -> bool {
         (a.rotation - b.rotation).amax() <= SAME && (a.origin - b.origin).amax() <= SAME * size
     };
     a.iter().zip(b).all(near)
-}
-
-/// Whether a closed cut joint is put together as meant. Two right angles with the same axis of the successor leave it two directions,
-/// three right angles between the axes of both frames eight orientations; at zero coordinates of the joint the frames coincide.
-fn is_upright(cut: &Closure, positions: &Positions) -> bool {
-    let frame = |end: &linkdyn_kinematics::Attachment| positions.pose(end.link).rotation * end.pose.rotation;
-    let (one, two) = (frame(cut.predecessor()), frame(cut.successor()));
-    let right = |row: &Row| match row {
-        Row::Angle {
-            on_predecessor,
-            on_successor,
-            cosine,
-        } if *cosine == 0.0 => Some((*on_predecessor, *on_successor)),
-        _ => None,
-    };
-    let angles: Vec<(Vector3<f64>, Vector3<f64>)> = cut.rows().iter().filter_map(right).collect();
-    let forward = |a: &Vector3<f64>, b: &Vector3<f64>| (one * a).dot(&(two * b)) > 0.5;
-    match angles[..] {
-        [(a, axis), (b, other)] if axis == other => forward(&a.cross(&b), &axis),
-        [(a, _), (b, _), (c, _)] => [a, b, c].iter().all(|axis| forward(axis, axis)),
-        _ => true,
-    }
 }
 
 /// Points of a Kronecker sequence in the unit box.

@@ -2,7 +2,8 @@
 
 use super::balance::{Balance, By, check, number};
 use super::error::AnalysisError;
-use crate::mechanism::Mechanism;
+use crate::error::StartError;
+use crate::mechanism::{Mechanism, Start, State};
 use linkdyn_kinematics::Positions;
 use linkdyn_kinematics::assembly;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -31,22 +32,25 @@ pub enum Seek {
 }
 
 /// How to look.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Which one.
     pub seek: Seek,
     /// Time at which loads are taken \[s\].
     pub time: f64,
+    /// Coordinates that stay where they are, whatever force that takes.
+    pub held: Vec<String>,
     /// Iterations to try.
     pub iterations: usize,
 }
 
 impl Default for Settings {
-    /// A stable one, at t = 0, in up to 200 iterations.
+    /// A stable one, at t = 0, nothing held, in up to 200 iterations.
     fn default() -> Self {
         Self {
             seek: Seek::Stable,
             time: 0.0,
+            held: Vec::new(),
             iterations: 200,
         }
     }
@@ -68,7 +72,7 @@ pub enum Stability {
 pub struct Equilibrium {
     /// Coordinates.
     pub q: Vec<f64>,
-    /// Multipliers of all loops.
+    /// Multipliers of all loops, then of the prescribed motions: the forces \[N\] or torques \[N m\] that hold their coordinates.
     pub multipliers: Vec<f64>,
     /// Independent speeds, in the order of the stiffness.
     pub independent: Vec<String>,
@@ -87,7 +91,8 @@ pub struct Equilibrium {
 }
 
 /// An equilibrium from the closed position `q`, for speeds zero. Friction in joints acts by speed and is none at rest; springs,
-/// weight, drives at the time given, and the elements of flexible links count in full.
+/// weight, drives, forces on points and struts at the time given, and the elements of flexible links count in full. Coordinates with
+/// prescribed motion are held where they are at that time, those of which the speed alone is prescribed where they are in `q`.
 ///
 /// The condition is `T^T f(q) = 0` with `T` the tangent of the loops: no virtual power. Newton's method takes
 /// `K = - d(T^T f)/dz`, the term of multipliers and second derivatives of the loops included since `T` changes with the position.
@@ -95,17 +100,22 @@ pub struct Equilibrium {
 /// as does not lead far uphill again; [`Seek::Nearest`] shortens steps by the natural monotonicity test \[Deuflhard 2004\].
 ///
 /// # Errors
-/// [`AnalysisError::NoEquilibrium`] where none is found; other [`AnalysisError`]s for what does not fit.
+/// [`AnalysisError::NoEquilibrium`] where none is found; [`AnalysisError::Internals`] for clearance and stops, whose contacts would have
+/// to be known; other [`AnalysisError`]s for what does not fit.
 pub fn equilibrium(mechanism: &Mechanism, q: &[f64], settings: &Settings) -> Result<Equilibrium, AnalysisError> {
     check(mechanism, q, None)?;
     if !settings.time.is_finite() {
         return Err(number("time", settings.time, "a finite number"));
     }
+    let more: Result<Vec<usize>, StartError> = settings.held.iter().map(|name| mechanism.speed(name)).collect();
+    let balance = Balance::holding(mechanism, more?)?;
+    let held = balance.held_flags();
     let mut rest = Rest {
-        balance: Balance::new(mechanism)?,
+        balance,
         mechanism,
         time: settings.time,
-        q: q.to_vec(),
+        q: guided(mechanism, q, settings.time, &held)?,
+        held,
         scale: 0.0,
     };
     let mut worst = (0, f64::NAN);
@@ -149,12 +159,55 @@ pub fn equilibrium(mechanism: &Mechanism, q: &[f64], settings: &Settings) -> Res
     Err(rest.failure(settings.iterations, worst))
 }
 
+/// Where a run begins that shall start from rest, or from the speeds of `start`, under the loads that there are: the loops are closed from
+/// `start`, the [`equilibrium`] is sought from there, in which flexible links have sagged, and the speeds are those of `start` there.
+///
+/// # Errors
+/// See [`Mechanism::assemble`] and [`equilibrium`]. Where nothing can move besides what is held that is no error: the start is then as
+/// assembled.
+pub fn settled(mechanism: &Mechanism, start: &Start, settings: &Settings) -> Result<State, AnalysisError> {
+    let (begin, _) = mechanism.assemble(start)?;
+    let q = match equilibrium(mechanism, &begin.q, settings) {
+        Ok(rest) => rest.q,
+        Err(AnalysisError::NoFreedom) => return Ok(begin),
+        Err(other) => return Err(other),
+    };
+    let names = mechanism.coordinate_names().map(str::to_owned);
+    let there = Start {
+        positions: names.zip(q).collect(),
+        ..start.clone()
+    };
+    Ok(mechanism.assemble(&there)?.0)
+}
+
+/// The position `q` with prescribed coordinates where they are at time `t`.
+fn guided(mechanism: &Mechanism, q: &[f64], t: f64, held: &[bool]) -> Result<Vec<f64>, AnalysisError> {
+    let system = mechanism.system();
+    let mut guess = q.to_vec();
+    for guided in system.guided().iter().filter(|guided| !guided.speed_only) {
+        guess[guided.coordinate] = guided.guide.at(t)[0];
+    }
+    if guess == q {
+        return Ok(guess);
+    }
+    let closed = assembly::assemble(
+        system.tree(),
+        system.closures(),
+        &guess,
+        held,
+        &assembly::Settings::default(),
+    );
+    Ok(closed?.q)
+}
+
 /// The search at the position reached.
 struct Rest<'a> {
     balance: Balance<'a>,
     mechanism: &'a Mechanism,
     time: f64,
     q: Vec<f64>,
+    /// A flag a speed: those of prescribed coordinates and of others that are held.
+    held: Vec<bool>,
     /// Size of forces \[N m, N\].
     scale: f64,
 }
@@ -200,8 +253,8 @@ impl Rest<'_> {
         let system = self.mechanism.system();
         let (tree, mut q) = (system.tree(), self.q.clone());
         tree.displace(&mut q, (tangent * step).as_slice());
-        let held = vec![false; tree.speeds()];
-        let closed = assembly::assemble(tree, system.closures(), &q, &held, &assembly::Settings::default());
+        let settings = assembly::Settings::default();
+        let closed = assembly::assemble(tree, system.closures(), &q, &self.held, &settings);
         Ok(closed.ok().map(|closed| closed.q))
     }
 

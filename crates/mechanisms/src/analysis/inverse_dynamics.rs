@@ -26,7 +26,8 @@ pub struct Needs {
     pub v: Vec<f64>,
     /// Rates of the speeds.
     pub a: Vec<f64>,
-    /// Multipliers of all loops; those of smallest norm where equations are redundant, as in forward dynamics.
+    /// Multipliers of all loops, those of smallest norm where equations are redundant, as in forward dynamics; then zero for each
+    /// prescribed motion of the mechanism.
     pub multipliers: Vec<f64>,
     /// Friction torques or forces of the joints with friction, with the sign of the speed that they oppose.
     pub friction: Vec<f64>,
@@ -43,6 +44,8 @@ pub struct Needs {
 ///
 /// the principle of virtual power. Friction `tau` depends on the reactions, these on `lambda`, and `lambda` on friction: that loop is
 /// solved by Newton's method.
+///
+/// Motions that the mechanism itself prescribes are left out: name their coordinates among the `prescribed` ones to have their drives.
 ///
 /// # Errors
 /// [`AnalysisError`] for names and numbers that do not fit, where the prescribed coordinates do not determine the motion, and where

@@ -3,6 +3,7 @@
 use super::balance::{Balance, By, check, number};
 use super::error::AnalysisError;
 use super::modes::{Mode, general_modes, undamped_modes};
+use crate::error::StartError;
 use crate::mechanism::{Mechanism, State};
 use linkdyn_dynamics::Workspace;
 use nalgebra::DMatrix;
@@ -36,22 +37,29 @@ pub struct Linearised {
 /// `M = du/dz''`, `D = du/dz'`, `K = du/dz`,
 ///
 /// by four-point differences; velocities and accelerations of the dependent joints follow `z`. Since `u = T^T r` and `T` changes with the
-/// position, `K` holds the multipliers times the second derivatives of the loops.
+/// position, `K` holds the multipliers times the second derivatives of the loops. Coordinates with prescribed motion are held where they
+/// are, and the state must then be at rest.
 ///
 /// # Errors
 /// [`AnalysisError`] for what does not fit; [`AnalysisError::Quaternion`] where the state moves and an independent speed is that of a
 /// ball joint with a quaternion, which is the rate of no coordinate.
 pub fn linearise(mechanism: &Mechanism, t: f64, state: &State) -> Result<Linearised, AnalysisError> {
+    holding(mechanism, t, state, &[])
+}
+
+/// As [`linearise`], with more coordinates held where they are, by name; the state must then be at rest.
+///
+/// # Errors
+/// As there, and for unknown names.
+pub fn holding(mechanism: &Mechanism, t: f64, state: &State, held: &[String]) -> Result<Linearised, AnalysisError> {
     check(mechanism, &state.q, Some(&state.v))?;
     if !t.is_finite() {
         return Err(number("t", t, "a finite number"));
     }
     let system = mechanism.system();
-    let mut balance = Balance::new(mechanism)?;
+    let more: Result<Vec<usize>, StartError> = held.iter().map(|name| mechanism.speed(name)).collect();
+    let mut balance = Balance::holding(mechanism, more?)?;
     balance.choose(&state.q, &[])?;
-    let mut work = Workspace::new(system);
-    let evaluated = system.evaluate(t, &state.q, &state.v, &mut work);
-    evaluated.map_err(|cause| mechanism.explain(cause))?;
     let still = state.v.iter().all(|v| *v == 0.0);
     let tree = system.tree();
     let quaternion = |speed: &&usize| {
@@ -67,16 +75,31 @@ pub fn linearise(mechanism: &Mechanism, t: f64, state: &State) -> Result<Lineari
             coordinate: mechanism.speeds[speed].clone(),
         });
     }
-    let pick = |values: &[f64]| -> Vec<f64> { balance.independent.iter().map(|&speed| values[speed]).collect() };
-    let (rates, second) = (pick(&state.v), pick(work.rates()));
-    let (at, motion) = ((t, state.q.as_slice()), (rates.as_slice(), second.as_slice()));
+    let independent = balance.independent.clone();
+    let pick = |values: &[f64]| -> Vec<f64> { independent.iter().map(|&speed| values[speed]).collect() };
+    let at = (t, state.q.as_slice());
+    let accelerations = match balance.first_held() {
+        None => {
+            let mut work = Workspace::new(system);
+            let evaluated = system.evaluate(t, &state.q, &state.v, &mut work);
+            evaluated.map_err(|cause| mechanism.explain(cause))?;
+            work.rates().to_vec()
+        }
+        Some(_) if still => balance.let_go(at)?,
+        Some(name) => {
+            let what = format!("coordinate `{name}` is held or has a prescribed motion, but the state moves");
+            return Err(AnalysisError::Internals { what });
+        }
+    };
+    let (rates, second) = (pick(&state.v), pick(&accelerations));
+    let motion = (rates.as_slice(), second.as_slice());
     let tangent = balance.moving(t, &state.q, &rates, &second)?.tangent;
     let linearised = Linearised {
         mass: balance.mass(at, motion)?,
         damping: balance.slopes(By::Speed, at, motion, &tangent)?,
         stiffness: balance.slopes(By::Position, at, motion, &tangent)?,
         independent: balance.independent_names(),
-        rates: work.rates().to_vec(),
+        rates: accelerations,
         tangent,
         still,
     };

@@ -104,6 +104,9 @@ pub struct Path {
 /// with the driven coordinates held. A step counts if the correction is small beside it and the sign of the determinant of the loops
 /// stays, so that the branch is never left; others are halved.
 ///
+/// Forces do not count, those of contacts included, nor do prescribed motions: the driven coordinates take their place. What clearance adds
+/// to a mechanism can move, and must be driven as well.
+///
 /// Speeds solve `G v = 0`, their rates `G v' + gamma = 0`, with the driven ones given (symbols: `linkdyn_kinematics::notation`).
 ///
 /// # Errors
@@ -211,7 +214,7 @@ impl<'a> Follower<'a> {
             .collect();
         let motion = sweep.driven.iter().map(|one| (one.speed, one.acceleration)).unzip();
         let mut follower = Self {
-            balance: Balance::new(mechanism)?,
+            balance: Balance::kinematic(mechanism),
             mechanism,
             largest_step: sweep.largest_step,
             coordinates,

@@ -8,7 +8,7 @@ use super::loads::{self, Sitting};
 use super::names::unread;
 use crate::clearance::Clearance;
 use crate::linkage::{Linkage, Mount};
-use crate::spanning::{Edge, Role, spanning_tree};
+use crate::spanning::{Edge, Role, backwards, spanning_tree};
 use linkdyn_kinematics::{Joint, Pose};
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::collections::HashSet;
@@ -224,23 +224,6 @@ fn sits_on_coordinates(item: &JointItem) -> Option<&'static str> {
         (item.prescribed.is_some(), "prescribed"),
     ];
     there.into_iter().find_map(|(there, key)| there.then_some(key))
-}
-
-/// The same joint with exchanged sides and coordinates that mean the same, where there is one, and whether their order is the opposite.
-/// Coordinates of balls, planes and free links would have to say how the predecessor moves against the successor.
-fn backwards(joint: Joint) -> Option<(Joint, bool)> {
-    match joint {
-        Joint::Revolute { axis } => Some((Joint::Revolute { axis: -axis }, false)),
-        Joint::Prismatic { axis } => Some((Joint::Prismatic { axis: -axis }, false)),
-        Joint::Cylindrical { axis } => Some((Joint::Cylindrical { axis: -axis }, false)),
-        Joint::Screw { axis, pitch } => Some((Joint::Screw { axis: -axis, pitch }, false)),
-        Joint::Universal { first, second } => {
-            let (first, second) = (-second, -first);
-            Some((Joint::Universal { first, second }, true))
-        }
-        Joint::Fixed => Some((Joint::Fixed, false)),
-        _ => None,
-    }
 }
 
 fn joint(name: &str, item: &JointItem, faults: &mut Faults<'_>) -> Option<Joint> {

@@ -21,6 +21,7 @@
 mod beam;
 mod clearance;
 mod contact;
+mod examples;
 mod fault;
 mod format;
 mod friction;
@@ -37,6 +38,7 @@ mod start;
 pub use beam::{BeamItem, SectionItem};
 pub use clearance::{BristleItem, ClearanceItem};
 pub use contact::ContactItem;
+pub use examples::EXAMPLES;
 pub use fault::{Fault, SceneFileError};
 pub use format::*;
 pub use friction::FrictionItem;

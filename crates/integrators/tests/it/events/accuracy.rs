@@ -1,12 +1,13 @@
 //! Where and when.
 
 use super::*;
+use crate::problems::Any;
 use proptest::prelude::*;
 
 /// Parabolas are exact for all methods, so times of impact are so too.
 #[test]
 fn a_bouncing_ball() {
-    fn check<M: Method<B>, B: Problem>(ball: B, method: M) {
+    fn check<M: Method<Any<'static>> + 'static, B: Problem + 'static>(ball: B, method: M) {
         let e: f64 = 0.5;
         let mut run = start(ball, method, 0.0, &[0.5, 0.0], 1e-9);
         let (found, error) = events_until_failure(&mut run, 10.0);
@@ -60,7 +61,11 @@ fn reflected() -> impl Problem {
     }
 }
 
-fn after_reflections<P: Problem, M: Method<P>>(problem: P, method: M, tolerance: f64) -> [f64; 3] {
+fn after_reflections<P: Problem + 'static, M: Method<Any<'static>> + 'static>(
+    problem: P,
+    method: M,
+    tolerance: f64,
+) -> [f64; 3] {
     let mut run = start(problem, method, 0.0, &[1.0, 0.0], tolerance);
     let times = times(&mut run, 10.0);
     assert_eq!(times.len(), 4);
@@ -78,7 +83,7 @@ fn orders() {
         exact.iter().zip(again).all(|(a, b)| (a - b).abs() < 2e-12),
         "{exact:?} {again:?}"
     );
-    fn check<P: Problem, M: Method<P>>(
+    fn check<P: Problem + 'static, M: Method<Any<'static>> + 'static>(
         exact: [f64; 3],
         problem: fn() -> P,
         method: impl Fn(f64) -> M,
@@ -102,7 +107,7 @@ fn orders() {
 #[test]
 fn tolerances() {
     let exact = after_reflections(reflected(), Dop853::default(), 1e-14);
-    fn check<P: Problem, M: Method<P>>(exact: [f64; 3], problem: P, method: M) {
+    fn check<P: Problem + 'static, M: Method<Any<'static>> + 'static>(exact: [f64; 3], problem: P, method: M) {
         let found = after_reflections(problem, method, 1e-11);
         assert!(exact.iter().zip(found).all(|(a, b)| (a - b).abs() < 3e-10), "{found:?}");
     }
@@ -133,7 +138,12 @@ fn a_pendulum_through_its_lowest_point() {
         },
         change: |_: &mut f64, _, _: &mut [f64], _: &[bool]| Ok(()),
     };
-    fn check<P: Problem, M: Method<P>>(pendulum: P, method: M, quarter: f64, tolerance: f64) {
+    fn check<P: Problem + 'static, M: Method<Any<'static>> + 'static>(
+        pendulum: P,
+        method: M,
+        quarter: f64,
+        tolerance: f64,
+    ) {
         let mut run = start(pendulum, method, 0.0, &[2.0, 0.0], 1e-13);
         let found = events(&mut run, 20.0);
         assert_eq!(found.len(), (20.0 / quarter / 2.0 + 0.5) as usize);
@@ -154,7 +164,7 @@ fn a_pendulum_through_its_lowest_point() {
 /// A right-hand side in pieces is integrated without any error: y' = ±1, turned round at 0 and 1.
 #[test]
 fn a_zigzag_is_exact() {
-    fn check<M: Method<Z>, Z: Problem>(zigzag: Z, method: M) {
+    fn check<M: Method<Any<'static>> + 'static, Z: Problem + 'static>(zigzag: Z, method: M) {
         let mut run = start(zigzag, method, 0.0, &[0.25], 1e-6);
         let found = times(&mut run, 100.5);
         let expected: Vec<f64> = (0..100).map(|n| 0.75 + n as f64).collect();
@@ -221,7 +231,7 @@ proptest! {
             change: |_: &mut f64, _, _: &mut [f64], _: &[bool]| Ok(()),
         };
         let y0 = [phase.cos(), direction * phase.sin()];
-        fn run<P: Problem, M: Method<P>>(problem: P, method: M, y0: &[f64], end: f64) -> Vec<(f64, Vec<bool>)> {
+        fn run<P: Problem + 'static, M: Method<Any<'static>> + 'static>(problem: P, method: M, y0: &[f64], end: f64) -> Vec<(f64, Vec<bool>)> {
             events(&mut start(problem, method, 0.0, y0, 1e-11), end)
         }
         let end = direction * end;

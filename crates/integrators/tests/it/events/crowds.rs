@@ -1,6 +1,7 @@
 //! Events that follow from each other at one time, and events that accumulate.
 
 use super::*;
+use crate::problems::Any;
 
 /// Three balls in a row, all of them touching the next: the first hits, and the blow goes through at one time.
 #[test]
@@ -32,7 +33,7 @@ fn a_blow_goes_through_a_row() {
             Ok(())
         },
     };
-    fn check<P: Problem, M: Method<P>>(row: P, method: M) {
+    fn check<P: Problem + 'static, M: Method<Any<'static>> + 'static>(row: P, method: M) {
         let mut run = start(row, method, 0.0, &[0.0, 1.0, 1.0, 2.0, 0.0, 0.0], 1e-6);
         let found = events(&mut run, 1.0);
         let expected = [[true, false, false], [false, true, false], [false, false, true]];
@@ -74,7 +75,7 @@ fn gap(push: f64) -> impl Problem {
 /// Mode and sign of the gap agree after each step, for gaps that close fast and slowly, and for such as hardly touch.
 #[test]
 fn a_gap_that_closes_and_opens() {
-    fn check<P: Problem, M: Method<P>>(gap: P, method: M, y0: [f64; 2]) -> usize {
+    fn check<P: Problem + 'static, M: Method<Any<'static>> + 'static>(gap: P, method: M, y0: [f64; 2]) -> usize {
         let mut run = start(gap, method, 0.0, &y0, 1e-10);
         let (mut closed, mut count, mut last) = (false, 0, 0.0);
         loop {
@@ -135,7 +136,7 @@ fn a_gap_that_is_grazed() {
             Ok(())
         },
     };
-    fn check<P: Problem, M: Method<P>>(grazing: P, method: M, depth: f64) {
+    fn check<P: Problem + 'static, M: Method<Any<'static>> + 'static>(grazing: P, method: M, depth: f64) {
         let mut run = start(grazing, method, 0.0, &[0.5 - depth, -1.0], 1e-10);
         let found = times(&mut run, 3.0);
         assert!(
@@ -164,7 +165,7 @@ fn a_gap_that_is_grazed() {
 /// A ball that stays on the floor is not let through: without a mode for lying there, the run ends with a diagnosis.
 #[test]
 fn a_ball_that_does_not_bounce() {
-    fn check<M: Method<B>, B: Problem>(ball: B, method: M) {
+    fn check<M: Method<Any<'static>> + 'static, B: Problem + 'static>(ball: B, method: M) {
         let mut run = start(ball, method, 0.0, &[0.5, 0.0], 1e-9);
         let (found, error) = events_until_failure(&mut run, 10.0);
         assert!((found[0].0 - 1.0).abs() < 1e-14);

@@ -1,6 +1,7 @@
 //! Failures of root functions and of changes at events.
 
 use super::*;
+use crate::problems::Any;
 
 fn decay<G: FnMut(f64, f64) -> Result<f64, EvalError>>(mut root: G, change: Option<EvalError>) -> impl Problem {
     let mut change = change;
@@ -24,8 +25,8 @@ fn retry() -> EvalError {
 
 #[test]
 fn a_root_function_that_is_not_a_number() {
-    let failure = |method: Box<dyn Method<Box<dyn Ode>>>, from: f64| {
-        let problem: Box<dyn Ode> = Box::new(decay(move |t, _| Ok(if t >= from { f64::NAN } else { 1.0 }), None));
+    let failure = |method: Box<dyn Method<Any<'static>>>, from: f64| {
+        let problem = decay(move |t, _| Ok(if t >= from { f64::NAN } else { 1.0 }), None);
         let mut run = start(problem, method, 0.0, &[1.0], 1e-6);
         let (_, error) = events_until_failure(&mut run, 2.0);
         match error {
@@ -33,7 +34,7 @@ fn a_root_function_that_is_not_a_number() {
             other => panic!("{other:?}"),
         }
     };
-    let methods = || -> [Box<dyn Method<Box<dyn Ode>>>; 6] {
+    let methods = || -> [Box<dyn Method<Any<'static>>>; 6] {
         [
             Box::new(Rk4::new(0.01)),
             Box::new(DormandPrince5::default()),

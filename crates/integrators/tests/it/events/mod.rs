@@ -11,7 +11,7 @@ use linkdyn_integrators::{
     Ode, Progress, Radau5, Rk4, Rodas, SecondOrder, Settings,
 };
 
-use crate::problems::boxed;
+use crate::problems::{Any, Run, begin};
 
 type Answer = Result<(), EvalError>;
 
@@ -135,21 +135,15 @@ pub fn events_until_failure<P: Ode, M: Method<P>>(
     panic!("no end");
 }
 
-pub fn start<'a, P: Ode>(
-    problem: P,
-    method: impl Method<P> + 'a,
+pub fn start<'a>(
+    problem: impl SecondOrder + 'a,
+    method: impl Method<Any<'a>> + 'a,
     t0: f64,
     y0: &[f64],
     tolerance: f64,
-) -> Integration<P, Box<dyn Method<P> + 'a>> {
-    Integration::new(
-        problem,
-        boxed(method),
-        t0,
-        y0,
-        Settings::tolerances(tolerance, tolerance),
-    )
-    .expect("good settings")
+) -> Run<'a> {
+    let settings = Settings::tolerances(tolerance, tolerance);
+    begin(problem, method, t0, y0, settings).expect("good settings")
 }
 
 /// Times differ by less.

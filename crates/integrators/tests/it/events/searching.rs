@@ -1,9 +1,10 @@
 //! What is found within one step.
 
 use super::*;
+use crate::problems::Any;
 
 /// One step of length 1, which polynomials of the fourth degree follow exactly.
-fn one_step<P: Problem>(problem: P) -> (Vec<(f64, Vec<bool>)>, u64) {
+fn one_step<P: Problem + 'static>(problem: P) -> (Vec<(f64, Vec<bool>)>, u64) {
     let mut run = start(problem, DormandPrince5::fixed(10.0), 0.0, &[0.0], 1e-6);
     let found = events(&mut run, 1.0);
     (found, run.statistics().accepted)
@@ -71,7 +72,7 @@ fn a_dip_too_narrow_is_missed() {
 /// At the start nothing has been positive yet, so nothing fires; at a stop and at the end it is found, once.
 #[test]
 fn at_the_start_at_a_stop_and_at_the_end() {
-    fn check<M: Method<C>, C: Problem>(clock: C, method: M) {
+    fn check<M: Method<Any<'static>> + 'static, C: Problem + 'static>(clock: C, method: M) {
         let run = start(clock, method, 0.0, &[0.0], 1e-6);
         let mut run = run.with_stops(&[0.5, 0.75]).expect("finite");
         let mut seen = Vec::new();
@@ -115,7 +116,7 @@ fn at_the_start_at_a_stop_and_at_the_end() {
 /// In both directions a function that falls fires, one that rises does not.
 #[test]
 fn backward_in_time() {
-    fn check<M: Method<C>, C: Problem>(clock: C, method: M) {
+    fn check<M: Method<Any<'static>> + 'static, C: Problem + 'static>(clock: C, method: M) {
         let mut run = start(clock, method, 0.0, &[0.0], 1e-6);
         assert_eq!(events(&mut run, 1.0), [(0.5, vec![true, false])]);
         assert_eq!(events(&mut run, 0.0), [(0.25, vec![false, true])]);
@@ -132,7 +133,7 @@ fn backward_in_time() {
 /// A jump of a root function is found as well as a root.
 #[test]
 fn a_function_that_jumps() {
-    fn check<M: Method<C>, C: Problem>(clock: C, method: M) {
+    fn check<M: Method<Any<'static>> + 'static, C: Problem + 'static>(clock: C, method: M) {
         let mut run = start(clock, method, 0.0, &[0.0], 1e-6);
         let found = times(&mut run, 10.0);
         assert_close(&found, &[1.0 / 3.0], 1e-13);
