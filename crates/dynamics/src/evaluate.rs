@@ -278,8 +278,11 @@ impl System {
                     mass.inward(nodes, positions, &mut work.columns, column, &[]);
                 }
                 mass.outward(nodes, positions, &work.columns, &mut work.solutions, column);
-                if mass.is_doubtful() {
-                    let unit = column.checked_sub(work.first_unit).map(|k| self.reaction_loads[k].speed);
+                if mass.refinements() > 0 {
+                    work.counters.refinements += mass.refinements();
+                    let unit = column
+                        .checked_sub(work.first_unit)
+                        .map(|k| self.reaction_loads[k].speed);
                     let known = Column {
                         force: |speed| unit.map_or(work.generalised[speed], |unit| f64::from(u8::from(speed == unit))),
                         wrenches: if unit.is_none() { &work.own } else { &[] },

@@ -6,13 +6,14 @@
 
 use super::{LocalLoops, Loops};
 use crate::columns::Columns;
+use crate::composite::ROUNDING;
 use crate::symmetric::SpatialInertia;
 use linkdyn_kinematics::{Freedom, Node, NodePosition, Wrench};
 
-/// Squares by pivots beyond which solutions are refined: rounding of 1e-16 has then grown to 1e-12, and more in the multipliers.
-const DOUBTFUL: f64 = 1e4;
-/// Each step takes away as many digits of the error as the factors have; those of the worst pivots that count have four.
-const STEPS: usize = 2;
+/// Error of factors, relative, that is left alone: multipliers magnify it by some tens.
+const GOOD: f64 = 1e-12;
+/// Steps at most. Factors of the worst pivots that count are good to 1e-3.
+const STEPS: u64 = 4;
 
 /// What a column was before it was taken inward.
 pub(crate) struct Column<'a, F> {
@@ -45,9 +46,11 @@ impl Scratch {
 }
 
 impl LocalLoops {
-    /// Whether solutions should be refined.
-    pub fn is_doubtful(&self) -> bool {
-        self.loops.doubt > DOUBTFUL
+    /// Steps of refinement that solutions need: each takes away as many digits of the error as the factors have.
+    pub fn refinements(&self) -> u64 {
+        let error = ROUNDING * self.loops.doubt;
+        let errors = std::iter::successors(Some(error), |left| Some(left * error));
+        errors.zip(0..STEPS).take_while(|(left, _)| *left > GOOD).count() as u64
     }
 
     /// Multipliers found last.
@@ -67,7 +70,7 @@ impl LocalLoops {
         column: usize,
     ) {
         let mut scratch = std::mem::take(&mut self.scratch);
-        for _ in 0..STEPS {
+        for _ in 0..self.refinements() {
             let Scratch { rates, lambda, gap } = &mut scratch;
             lambda.copy_from_slice(&self.loops.lambda);
             for (speed, rate) in rates.iter_mut().enumerate() {
