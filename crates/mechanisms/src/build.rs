@@ -186,13 +186,11 @@ impl Linkage {
                 });
             }
         }
+        let mut hangs = vec![false; self.joints.len()];
         loop {
             let next = self.joints.iter().enumerate().find(|(k, joint)| {
-                let reached = match joint.predecessor.link.0 {
-                    None => true,
-                    Some(link) => placed.frames[link].is_some(),
-                };
-                reached && !placed.order.contains(k)
+                let before = joint.predecessor.link.0;
+                !hangs[*k] && before.is_none_or(|link| placed.frames[link].is_some())
             });
             let Some((k, item)) = next else { break };
             let mut base = placed.attachment(&Mount {
@@ -219,6 +217,7 @@ impl Linkage {
                     });
                 }
             }
+            hangs[k] = true;
             placed.order.push(k);
             placed.nodes.push(node);
         }

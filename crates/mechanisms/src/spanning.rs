@@ -35,13 +35,16 @@ pub enum Role {
 pub fn spanning_tree(links: usize, joints: &[Edge]) -> Vec<Role> {
     let mut roles = vec![Role::Cut; joints.len()];
     let mut depths: Vec<Option<usize>> = vec![None; links];
-    // Links that a joint shall carry that cannot but carry its successor.
-    let bound = |link: usize, k: usize| {
-        let one_way = |(other, joint): (usize, &Edge)| {
-            other != k && !joint.backwards && joint.cut == Some(false) && joint.successor == Some(link)
-        };
-        joints.iter().enumerate().any(one_way)
-    };
+    // Joints of a link that shall carry it and cannot but carry their successor.
+    let one_way =
+        |joint: &Edge, link: usize| !joint.backwards && joint.cut == Some(false) && joint.successor == Some(link);
+    let mut carriers = vec![0; links];
+    for joint in joints {
+        if let Some(link) = joint.successor.filter(|&link| link < links && one_way(joint, link)) {
+            carriers[link] += 1;
+        }
+    }
+    let bound = |link: usize, k: usize| carriers[link] > usize::from(one_way(&joints[k], link));
     let depth = |depths: &[Option<usize>], link: Option<usize>| match link {
         None => Some(0),
         Some(k) => depths.get(k).copied().flatten(),
@@ -56,8 +59,11 @@ pub fn spanning_tree(links: usize, joints: &[Edge]) -> Vec<Role> {
                 (None, Some(depth)) => (Role::CarriesBackwards, depth, joint.predecessor?),
                 _ => return None,
             };
+            if link >= links {
+                return None;
+            }
             let last = bound(link, k) || (role == Role::CarriesBackwards && !joint.backwards);
-            (link < links).then_some(((last, joint.cut.is_none(), joint.freedoms, depth, k), role, link))
+            Some(((last, joint.cut.is_none(), joint.freedoms, depth, k), role, link))
         });
         let Some(((.., depth, k), role, link)) = next.min_by_key(|&(rank, ..)| rank) else {
             return roles;
