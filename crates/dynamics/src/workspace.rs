@@ -23,6 +23,8 @@ pub struct Counters {
     pub reaction_continuations: u64,
     /// Evaluations at which closure equations were redundant.
     pub redundant: u64,
+    /// Steps of refinement, where loops are eliminated one by one and one of them is nearly singular.
+    pub refinements: u64,
 }
 
 /// The mass matrix in a form that can be solved with.

@@ -184,7 +184,6 @@ impl Linkage {
             carriers: Vec::new(),
             frames: vec![None; self.links.len()],
         };
-        let mut hangs = vec![false; self.joints.len()];
         for (k, joint) in self.joints.iter().enumerate() {
             let carried = |other: &&JointItem| other.successor.link == joint.successor.link;
             if let Some(first) = self.joints[..k].iter().find(carried) {
@@ -195,13 +194,11 @@ impl Linkage {
                 });
             }
         }
+        let mut hangs = vec![false; self.joints.len()];
         loop {
             let next = self.joints.iter().enumerate().find(|(k, joint)| {
-                let reached = match joint.predecessor.link.0 {
-                    None => true,
-                    Some(link) => placed.frames[link].is_some(),
-                };
-                reached && !hangs[*k]
+                let before = joint.predecessor.link.0;
+                !hangs[*k] && before.is_none_or(|link| placed.frames[link].is_some())
             });
             let Some((k, item)) = next else { break };
             let mut base = placed.attachment(&Mount {
