@@ -1,6 +1,7 @@
 //! Loops eliminated where they close, beside all of them at once.
 
 use linkdyn_dynamics::{Baumgarte, Formulation, Guide, Guided, ReactionLoad, System, Workspace, lagrange};
+use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
 use linkdyn_tests::ladders::{Stage, folded};
 use linkdyn_tests::loads::Rough;
 use linkdyn_tests::numbers::{condition, largest};
@@ -218,4 +219,28 @@ fn a_loop_that_is_nearly_singular_by_itself_costs_no_digits() {
         ];
         assert!(largest(&gaps) < 1e-11, "{angle}: {gaps:?}");
     }
+}
+
+fn loop_work(system: &System) -> Option<usize> {
+    Workspace::new(system).loop_work()
+}
+
+/// Beyond the first ones each stage takes the same work as the one before, so that all of it is linear to the last operation.
+#[test]
+fn work_on_small_loops_is_linear_in_their_number() {
+    for stage in Stage::ALL {
+        let work = |count| loop_work(&stage.times(count).machine(Formulation::LocalLoops).system).expect("local");
+        let works = [10, 20, 40].map(work);
+        assert_eq!(works[2] - works[1], 2 * (works[1] - works[0]), "{stage:?}: {works:?}");
+        assert_eq!(works[1] > works[0], stage != Stage::Link, "{stage:?}: {works:?}");
+    }
+}
+
+#[test]
+fn many_loops_are_eliminated_one_by_one_and_few_at_once() {
+    let many = Stage::Apart.times(20).machine(Formulation::Recursive);
+    assert!(loop_work(&many.system).is_some());
+    let few = rsrrr(&Rsrrr::default()).linkage.build().expect("valid");
+    assert_eq!(few.system().equations(), 3);
+    assert_eq!(loop_work(few.system()), None);
 }

@@ -104,6 +104,11 @@ impl LocalLoops {
         self.articulated.inverse_diagonal()
     }
 
+    /// See [`Plan::cost`].
+    pub fn work(&self) -> usize {
+        self.loops.plan.cost()
+    }
+
     /// Number of independent equations.
     pub fn rank(&self) -> usize {
         self.loops.rank.iter().sum()

@@ -184,6 +184,15 @@ impl Workspace {
         self.constraint.redundant()
     }
 
+    /// Multiplications and additions, nearly, that an evaluation takes for loops eliminated one by one; `None` where all of them are
+    /// solved for at once.
+    pub fn loop_work(&self) -> Option<usize> {
+        match &self.mass {
+            MassFactor::LocalLoops(mass) => Some(mass.work()),
+            MassFactor::Composite(_) | MassFactor::Articulated(_) => None,
+        }
+    }
+
     /// Positions of this evaluation.
     pub fn positions(&self) -> &Positions {
         &self.positions

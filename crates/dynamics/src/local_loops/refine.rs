@@ -31,8 +31,9 @@ pub(super) struct Scratch {
     /// Solution so far.
     rates: Vec<f64>,
     lambda: Vec<f64>,
-    /// What is left of the closures.
+    /// What is left of the closures, and the part of it that no motion answers.
     gap: Vec<f64>,
+    idle: Vec<f64>,
 }
 
 impl Scratch {
@@ -41,6 +42,7 @@ impl Scratch {
             rates: vec![0.0; speeds],
             lambda: vec![0.0; equations],
             gap: vec![0.0; equations],
+            idle: vec![0.0; equations],
         }
     }
 }
@@ -71,20 +73,31 @@ impl LocalLoops {
     ) {
         let mut scratch = std::mem::take(&mut self.scratch);
         for _ in 0..self.refinements() {
-            let Scratch { rates, lambda, gap } = &mut scratch;
+            let Scratch {
+                rates,
+                lambda,
+                gap,
+                idle,
+            } = &mut scratch;
             lambda.copy_from_slice(&self.loops.lambda);
             for (speed, rate) in rates.iter_mut().enumerate() {
                 *rate = solutions.at(speed, column);
-                *columns.at_mut(speed, column) = (known.force)(speed);
             }
             gap.fill(0.0);
             gap[..known.gamma.len()].copy_from_slice(known.gamma);
+            self.loops
+                .each_entry(nodes, |speed, equation, value| gap[equation] += value * rates[speed]);
+            if self.is_redundant() {
+                self.drop_contradiction(nodes, positions, (columns, solutions), column, (gap, idle));
+            }
+            for speed in 0..rates.len() {
+                *columns.at_mut(speed, column) = (known.force)(speed);
+            }
             let links = (bodies, known.wrenches);
             self.articulated
                 .subtract_inertial(nodes, positions, links, rates, columns, column);
             self.loops.each_entry(nodes, |speed, equation, value| {
                 *columns.at_mut(speed, column) += value * lambda[equation];
-                gap[equation] += value * rates[speed];
             });
             self.inward(nodes, positions, columns, column, gap);
             self.outward(nodes, positions, columns, solutions, column);
@@ -96,6 +109,29 @@ impl LocalLoops {
             self.drop_idle();
         }
         self.scratch = scratch;
+    }
+
+    /// Takes off a closure bias what no motion answers. The factors know that only as well as all else; but as multipliers it should
+    /// exert no force, and those that hold the force that it does exert mend it.
+    fn drop_contradiction(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        (columns, solutions): (&mut Columns, &mut Columns),
+        column: usize,
+        (gap, idle): (&mut [f64], &mut [f64]),
+    ) {
+        idle.copy_from_slice(self.smallest.idle(&self.loops, gap));
+        let speeds = self.articulated.inverse_diagonal().len();
+        (0..speeds).for_each(|speed| *columns.at_mut(speed, column) = 0.0);
+        self.loops.each_entry(nodes, |speed, equation, value| {
+            *columns.at_mut(speed, column) += value * idle[equation];
+        });
+        self.inward(nodes, positions, columns, column, &[]);
+        self.outward(nodes, positions, columns, solutions, column);
+        for (gap, (idle, mended)) in gap.iter_mut().zip(idle.iter().zip(&self.loops.lambda)) {
+            *gap -= idle + mended;
+        }
     }
 }
 
