@@ -32,7 +32,7 @@ pub struct Counters {
 pub(crate) enum MassFactor {
     Composite(Composite),
     Articulated(Articulated),
-    LocalLoops(LocalLoops),
+    LocalLoops(Box<LocalLoops>),
 }
 
 impl MassFactor {
@@ -101,7 +101,7 @@ impl Workspace {
             Formulation::CompositeBody | Formulation::Lagrange => true,
         };
         let mass = if let Some(plan) = plan_of_loops(system) {
-            MassFactor::LocalLoops(LocalLoops::new(tree, plan))
+            MassFactor::LocalLoops(Box::new(LocalLoops::new(tree, plan)))
         } else if composite {
             MassFactor::Composite(Composite::new(tree))
         } else {
