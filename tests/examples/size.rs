@@ -1,7 +1,10 @@
-//! Cost against size: time of one evaluation of chains, ladders and crowds of loops, and of one projection, as a table.
+//! Cost against size: time of one evaluation of chains, ladders and crowds of loops, and of one projection, as a table; then what it
+//! takes to build such a linkage and to assemble a start.
 //! `cargo run --release -p linkdyn-tests --example size`, with `dense` behind `--` to have the loops solved for all at once.
 
 use linkdyn_dynamics::{Formulation, System, Workspace};
+use linkdyn_integrators::Ode;
+use linkdyn_mechanisms::{Simulation, Start};
 use linkdyn_tests::ladders::Stage;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -59,6 +62,36 @@ fn measure(stage: Stage, count: usize, formulation: Formulation) {
     );
 }
 
+/// One row of what comes before the first step: times of building and assembly from a guess 1e-3 off, and of one right-hand side.
+fn prepare(stage: Stage, count: usize) {
+    let blueprint = stage.times(count);
+    let (linkage, coordinates) = blueprint.linkage();
+    let off = |(k, (name, q)): (usize, (String, f64))| (name, q + 1e-3 * (k as f64).sin());
+    let start = Start {
+        positions: coordinates.into_iter().enumerate().map(off).collect(),
+        ..Start::default()
+    };
+    let begin = Instant::now();
+    let mechanism = linkage.build().expect("valid");
+    let built = begin.elapsed();
+    let begin = Instant::now();
+    let (state, assembly) = mechanism.assemble(&start).expect("closes");
+    let assembled = begin.elapsed();
+    let mut simulation = Simulation::new(&mechanism);
+    let y = simulation.state_vector(&state);
+    let mut dy = vec![0.0; y.len()];
+    let evaluated = time(|| simulation.rhs(0.0, black_box(&y), &mut dy).expect("regular"));
+    let milli = |seconds: f64| 1e3 * seconds;
+    println!(
+        "{:9} {count:7} {:12.2} {:12.2} {:12} {:12.3}",
+        format!("{stage:?}"),
+        milli(built.as_secs_f64()),
+        milli(assembled.as_secs_f64()),
+        assembly.iterations,
+        milli(evaluated),
+    );
+}
+
 fn main() {
     let dense = std::env::args().any(|a| a == "dense");
     let formulation = if dense {
@@ -79,5 +112,18 @@ fn main() {
         {
             measure(stage, count, formulation);
         }
+    }
+    if dense {
+        return;
+    }
+    println!("\nstage       count     build ms  assembly ms        steps   right-hand side ms");
+    for stage in Stage::ALL {
+        let sizes: &[usize] = match stage {
+            Stage::Link => &[10, 100, 1000],
+            // Loops that share links are closed all at once, by singular values.
+            Stage::Crossed => &[3, 10, 30],
+            Stage::Carrying | Stage::Sided | Stage::Apart => &[10, 100, 300],
+        };
+        sizes.iter().for_each(|&count| prepare(stage, count));
     }
 }

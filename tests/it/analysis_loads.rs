@@ -327,3 +327,27 @@ fn stops_do_not_hinder_positions_and_are_named_where_forces_are_asked_for() {
         assert!(message.contains("joint `a0` has a limit"), "{message}");
     }
 }
+
+#[test]
+fn coordinates_are_held_by_name_but_not_parts_of_quaternions() {
+    let mut linkage = hanging(&[(0.6, 1.0), (0.4, 2.0)]);
+    let ball = linkage.link("ball", RigidInertia::solid_cylinder(1000.0, 0.1, 0.2, &Vector3::z()));
+    linkage.joint(
+        "S",
+        Joint::Spherical,
+        Mount::at_origin(Linkage::GROUND),
+        Mount::at_origin(ball),
+    );
+    let mechanism = linkage.build().expect("sound");
+    let held = |name: &str| Settings {
+        held: vec![name.to_owned()],
+        ..Settings::default()
+    };
+    let q = [0.5, 0.2, 1.0, 0.0, 0.0, 0.0];
+    let refused = equilibrium(&mechanism, &q, &held("S.w")).expect_err("no coordinate of its own");
+    assert!(matches!(refused, AnalysisError::Quaternion { .. }), "{refused}");
+    let refused = equilibrium(&mechanism, &q, &held("a2")).expect_err("unknown");
+    assert!(refused.to_string().contains("there is no coordinate `a2`"), "{refused}");
+    let rest = equilibrium(&mechanism, &q, &held("a0")).expect("the lower bar hangs");
+    assert!(rest.q[0] == 0.5 && (rest.q[1] + 0.5).abs() < 1e-9, "{:?}", rest.q);
+}

@@ -1,7 +1,8 @@
 //! Loops eliminated where they close, beside all of them at once.
 
 use linkdyn_dynamics::{Baumgarte, Formulation, Guide, Guided, ReactionLoad, System, Workspace, lagrange};
-use linkdyn_tests::ladders::Stage;
+use linkdyn_mechanisms::catalogue::{Rsrrr, rsrrr};
+use linkdyn_tests::ladders::{Stage, folded};
 use linkdyn_tests::loads::Rough;
 use linkdyn_tests::numbers::{condition, largest};
 use linkdyn_tests::{Blueprint, strategies};
@@ -112,7 +113,14 @@ proptest! {
             let outcome = system.evaluate(0.0, &blueprint.coordinates(), &blueprint.speeds(), &mut work);
             (outcome.map(|()| work), system)
         });
-        let equations = lagrange::equations(&both[0].1, &blueprint.coordinates(), &blueprint.speeds());
+        // The Lagrange equations know the closures only.
+        let system = &both[0].1;
+        let mut equations = lagrange::equations(system, &blueprint.coordinates(), &blueprint.speeds());
+        let first = equations.gradient.nrows();
+        equations.gradient.resize_vertically_mut(first + system.guided().len(), 0.0);
+        for (k, guided) in system.guided().iter().enumerate() {
+            equations.gradient[(first + k, guided.speed)] = 1.0;
+        }
         let held = linkdyn_tests::numbers::condition(&equations).map_or(f64::INFINITY, |condition| condition.product());
         prop_assume!(held < 1e6);
         let [(Ok(dense), _), (Ok(local), _)] = both else {
@@ -195,4 +203,44 @@ fn ladders_are_projected_as_by_the_dense_way() {
         let gaps = [apart(&local.0, &dense.0), apart(&local.1, &dense.1)];
         assert!(largest(&gaps) < 1e-9, "{stage:?}: {gaps:?}");
     }
+}
+
+/// The dense way pivots over all loops at once, the local one has to take the bad loop first.
+#[test]
+fn a_loop_that_is_nearly_singular_by_itself_costs_no_digits() {
+    for angle in [0.5, 1e-2, 1e-3, 1e-4] {
+        let mut blueprint = folded(angle);
+        blueprint.make_speeds_consistent();
+        let [dense, local] = BOTH.map(|formulation| blueprint.machine(formulation).evaluate());
+        assert_eq!((dense.redundant(), local.redundant()), (7, 7), "{angle}");
+        let gaps = [
+            apart(local.rates(), dense.rates()),
+            apart(local.multipliers(), dense.multipliers()),
+        ];
+        assert!(largest(&gaps) < 1e-11, "{angle}: {gaps:?}");
+    }
+}
+
+fn loop_work(system: &System) -> Option<usize> {
+    Workspace::new(system).loop_work()
+}
+
+/// Beyond the first ones each stage takes the same work as the one before, so that all of it is linear to the last operation.
+#[test]
+fn work_on_small_loops_is_linear_in_their_number() {
+    for stage in Stage::ALL {
+        let work = |count| loop_work(&stage.times(count).machine(Formulation::LocalLoops).system).expect("local");
+        let works = [10, 20, 40].map(work);
+        assert_eq!(works[2] - works[1], 2 * (works[1] - works[0]), "{stage:?}: {works:?}");
+        assert_eq!(works[1] > works[0], stage != Stage::Link, "{stage:?}: {works:?}");
+    }
+}
+
+#[test]
+fn many_loops_are_eliminated_one_by_one_and_few_at_once() {
+    let many = Stage::Apart.times(20).machine(Formulation::Recursive);
+    assert!(loop_work(&many.system).is_some());
+    let few = rsrrr(&Rsrrr::default()).linkage.build().expect("valid");
+    assert_eq!(few.system().equations(), 3);
+    assert_eq!(loop_work(few.system()), None);
 }

@@ -809,7 +809,7 @@ fn values_that_make_no_sense_are_refused_by_key_and_value() {
             ),
             (
                 "[links.tip.box]",
-                "[links.\"beam,1\".box]",
+                "[links.\"beam,1\"]\nmass = 1\n[joints.C]\nkind = \"revolute\"\nsuccessor.link = \"beam,1\"\n[links.tip.box]",
                 "the name `beam,1` is used twice",
             ),
             (

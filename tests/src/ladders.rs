@@ -58,6 +58,28 @@ impl Stage {
     }
 }
 
+/// A parallelogram, its links in line but for an angle \[rad\], hung on a link; its coupler is welded to the ground. The small loop is
+/// nearly singular, which the large one does not let anything feel.
+pub fn folded(angle: f64) -> Blueprint {
+    let mut b = Blueprint {
+        parts: Vec::new(),
+        cuts: Vec::new(),
+        gravity: Vector3::new(1.0, -9.0, 3.0),
+    };
+    let carrier = b.rod(None, Pose::identity(), 0.3);
+    // Off the line of the carrier, so that the large loop is far from singular.
+    let base = Pose::translation(0.3, 0.0, 0.0) * Pose::turn(Vector3::z_axis(), 1.0);
+    let coupler = b.four_bar(carrier, base);
+    for (part, q) in b.parts[1..].iter_mut().zip([angle, -angle, angle]) {
+        part.q = vec![q];
+    }
+    b.cuts.clear();
+    let end = Pose::translation(0.5, 0.0, 0.0);
+    b.close(coupler, end, Joint::revolute_z(), &[0.4], Some(3));
+    b.close(None, Pose::translation(0.2, 0.4, 0.0), Joint::Fixed, &[], coupler);
+    b
+}
+
 impl Blueprint {
     /// Hangs a rod of steel along x on a revolute about z; angle and speed vary from one to the next.
     fn rod(&mut self, parent: Option<usize>, placement: Pose, length: f64) -> Option<usize> {

@@ -53,6 +53,48 @@ fn a_wrong_key_is_told_with_its_place_and_the_right_word() {
     );
 }
 
+/// A prescribed crank is a drive to a run and held to what asks for rest; a loop that does not close is called by its cut joint.
+#[test]
+fn a_prescribed_crank_is_checked_and_analysed_and_an_open_loop_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("mine.toml").display().to_string();
+    assert_eq!(linkdyn(&["new", &file]).status.code(), Some(0));
+    let made = fs::read_to_string(&file).expect("the file");
+    let begin = made.find("drives = ").expect("the crank is driven");
+    let end = begin + made[begin..].find('\n').expect("a line");
+    let guided = made.replace(
+        &made[begin..end],
+        "prescribed = { polynomial = { coefficients = [1.0, 6.0] } }",
+    );
+    fs::write(&file, &guided).expect("written");
+    for words in [
+        vec!["check"],
+        vec!["analyse", "mobility"],
+        vec!["analyse", "positions"],
+        vec!["analyse", "drives"],
+        vec!["analyse", "branches"],
+    ] {
+        let words: Vec<&str> = [words[0], &file]
+            .into_iter()
+            .chain(words[1..].iter().copied())
+            .collect();
+        let run = linkdyn(&words);
+        assert_eq!(run.status.code(), Some(0), "{words:?}: {}", said(&run));
+    }
+    let rest = linkdyn(&["analyse", &file, "equilibrium"]);
+    assert!(said(&rest).contains("no freedom"), "{}", said(&rest));
+
+    let far = made.replace("point = [0.4, 0, 0]", "point = [4.0, 0, 0]");
+    assert!(far != made, "{made}");
+    fs::write(&file, far).expect("written");
+    let open = linkdyn(&["run", &file]);
+    assert!(
+        open.status.code() == Some(2) && said(&open).contains("cut joint `C`"),
+        "{}",
+        said(&open)
+    );
+}
+
 #[test]
 fn all_examples_are_drawn_counted_and_can_start() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../mechanisms/scenes");

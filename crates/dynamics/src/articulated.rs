@@ -3,6 +3,7 @@
 
 use crate::columns::Columns;
 use crate::composite::{ROUNDING, along};
+use crate::evaluate::inertial_wrench;
 use crate::symmetric::{SpatialInertia, Symmetric};
 use linkdyn_kinematics::{Freedom, Node, NodePosition, Tree, Twist, Wrench};
 use nalgebra::{Matrix3, Vector3};
@@ -239,6 +240,36 @@ impl Articulated {
         }
     }
 
+    /// Takes off a column of generalised forces those that the `bodies` and the links' own `wrenches` (none if empty) ask for while
+    /// the speeds change at `rates`.
+    pub fn subtract_inertial(
+        &mut self,
+        nodes: &[Node],
+        positions: &[NodePosition],
+        (bodies, wrenches): (&[SpatialInertia], &[Wrench]),
+        rates: &[f64],
+        columns: &mut Columns,
+        column: usize,
+    ) {
+        self.wrenches.fill(Wrench::zero());
+        self.wrenches[..wrenches.len()].copy_from_slice(wrenches);
+        for i in 1..nodes.len() {
+            let (node, here) = (&nodes[i], &positions[i]);
+            let mut twist = carried(&self.twists[node.parent], here);
+            node.advance(&here.axis, |speed| rates[speed], &mut twist);
+            self.wrenches[i] += inertial_wrench(&bodies[i], &twist);
+            self.twists[i] = twist;
+        }
+        for i in (1..nodes.len()).rev() {
+            let (node, here) = (&nodes[i], &positions[i]);
+            let wrench = self.wrenches[i];
+            if node.freedom != Freedom::None {
+                *columns.at_mut(node.speed, column) -= along(node, here, &wrench);
+            }
+            self.wrenches[node.parent] += wrench.shifted(&here.arm);
+        }
+    }
+
     /// Takes a column, already divided by the pivots, outward to rates of the speeds.
     #[inline]
     pub fn outward(
@@ -251,11 +282,7 @@ impl Articulated {
     ) {
         for i in 1..nodes.len() {
             let (node, here) = (&nodes[i], &positions[i]);
-            let before = self.twists[node.parent];
-            let mut twist = Twist {
-                angular: before.angular,
-                linear: before.linear + before.angular.cross(&here.arm),
-            };
+            let mut twist = carried(&self.twists[node.parent], here);
             if node.freedom != Freedom::None {
                 let pivot = &self.pivots[i];
                 let rate = columns.at_mut(node.speed, column);
@@ -268,5 +295,14 @@ impl Articulated {
             self.twists[i] = twist;
             passengers.arrived(i, &twist);
         }
+    }
+}
+
+/// Acceleration of a node's origin as if fixed on the node before.
+#[inline]
+fn carried(before: &Twist, here: &NodePosition) -> Twist {
+    Twist {
+        angular: before.angular,
+        linear: before.linear + before.angular.cross(&here.arm),
     }
 }

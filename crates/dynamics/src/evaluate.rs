@@ -4,6 +4,7 @@ use crate::composite::along;
 use crate::error::DynamicsError;
 use crate::lagrange;
 use crate::load::{Instant, InternalState, Loads, Motion};
+use crate::local_loops::Column;
 use crate::symmetric::SpatialInertia;
 use crate::system::{Formulation, System};
 use crate::workspace::{MassFactor, Workspace, moves};
@@ -276,9 +277,21 @@ impl System {
                 if column > 0 {
                     mass.inward(nodes, positions, &mut work.columns, column, &[]);
                 }
-                let rank = mass.rank();
-                let multipliers = mass.outward(nodes, positions, &work.columns, &mut work.solutions, column);
-                work.constraint.take(multipliers, column, rank);
+                mass.outward(nodes, positions, &work.columns, &mut work.solutions, column);
+                if mass.refinements() > 0 {
+                    work.counters.refinements += mass.refinements();
+                    let unit = column
+                        .checked_sub(work.first_unit)
+                        .map(|k| self.reaction_loads[k].speed);
+                    let known = Column {
+                        force: |speed| unit.map_or(work.generalised[speed], |unit| f64::from(u8::from(speed == unit))),
+                        wrenches: if unit.is_none() { &work.own } else { &[] },
+                        gamma: if unit.is_none() { &work.constraint.gamma } else { &[] },
+                    };
+                    let arrays = (&mut work.columns, &mut work.solutions);
+                    mass.refine(nodes, positions, &work.inertias, &known, arrays, column);
+                }
+                work.constraint.take(mass.multipliers(), column, mass.rank());
             }
         }
     }

@@ -12,6 +12,7 @@
 //! multipliers.
 
 mod plan;
+mod refine;
 mod smallest;
 
 use crate::articulated::{Articulated, ArticulatedInertia, Passengers, Pivot};
@@ -21,6 +22,7 @@ use crate::constraint::{NOTHING, REDUNDANT};
 use crate::symmetric::SpatialInertia;
 use linkdyn_kinematics::{Node, NodePosition, Tree, Twist, Wrench};
 pub(crate) use plan::Plan;
+pub(crate) use refine::Column;
 use smallest::Smallest;
 
 /// Articulated bodies with loops eliminated on the way.
@@ -31,6 +33,7 @@ pub(crate) struct LocalLoops {
     smallest: Smallest,
     /// Scratch, an equation each.
     known: Vec<f64>,
+    scratch: refine::Scratch,
 }
 
 /// All multipliers, block by block, slot by slot; see [`Plan`].
@@ -53,6 +56,8 @@ struct Loops {
     order: Vec<usize>,
     inverse: Vec<f64>,
     rank: Vec<usize>,
+    /// Largest ratio of a square, its error included, to the pivot that it became.
+    doubt: f64,
     /// What is left of each equation of a column taken inward, and the multipliers.
     beta: Vec<f64>,
     lambda: Vec<f64>,
@@ -66,6 +71,7 @@ impl LocalLoops {
             articulated: Articulated::new(tree),
             smallest: Smallest::new(&plan),
             known: vec![0.0; equations],
+            scratch: refine::Scratch::new(tree.speeds(), equations),
             loops: Loops {
                 gradient: vec![0.0; slots],
                 forces: vec![0.0; slots],
@@ -77,6 +83,7 @@ impl LocalLoops {
                 order: vec![0; equations],
                 inverse: vec![0.0; equations],
                 rank: vec![0; blocks],
+                doubt: 0.0,
                 beta: vec![0.0; equations],
                 lambda: vec![0.0; equations],
                 plan,
@@ -95,6 +102,11 @@ impl LocalLoops {
 
     pub fn inverse_diagonal(&self) -> &[f64] {
         self.articulated.inverse_diagonal()
+    }
+
+    /// See [`Plan::cost`].
+    pub fn work(&self) -> usize {
+        self.loops.plan.cost()
     }
 
     /// Number of independent equations.
@@ -118,6 +130,7 @@ impl LocalLoops {
         loops.diagonal.fill(0.0);
         loops.error.fill(0.0);
         loops.mobility.fill(0.0);
+        loops.doubt = 0.0;
         loops.beta.copy_from_slice(gamma);
         self.articulated
             .factor(nodes, positions, bodies, wrenches, columns, loops)?;
@@ -174,7 +187,8 @@ impl LocalLoops {
         self.loops.gathered_column(0, &mut Wrench::zero());
     }
 
-    /// Rates of the speeds, into a column of `solutions`, and multipliers for the column that was last taken inward.
+    /// Rates of the speeds, into a column of `solutions`, and [`multipliers`](Self::multipliers) for the column that was last taken
+    /// inward.
     pub fn outward(
         &mut self,
         nodes: &[Node],
@@ -182,18 +196,22 @@ impl LocalLoops {
         inward: &Columns,
         solutions: &mut Columns,
         column: usize,
-    ) -> &[f64] {
+    ) {
         for (speed, inverse) in self.articulated.inverse_diagonal().iter().enumerate() {
             *solutions.at_mut(speed, column) = inward.at(speed, column) * inverse;
         }
         self.loops.arrived(0, &Twist::zero());
         self.articulated
             .outward(nodes, positions, solutions, column, &mut self.loops);
+        self.drop_idle();
+    }
+
+    /// Makes the multipliers the smallest ones that do the same.
+    fn drop_idle(&mut self) {
         if self.is_redundant() {
             let idle = self.smallest.idle(&self.loops, &self.loops.lambda);
             self.loops.lambda.iter_mut().zip(idle).for_each(|(x, idle)| *x -= idle);
         }
-        &self.loops.lambda
     }
 }
 
@@ -307,16 +325,13 @@ impl Loops {
                 wrenches.swap(i, p);
             }
             inverse[i] = 1.0 / pivot;
+            let equation = block.equations[order[i]];
+            self.doubt = self.doubt.max((self.diagonal[equation] + self.error[equation]) / pivot);
             let (done, rest) = rows.split_at_mut((i + 1) * width);
             let row = &done[i * width..];
             for (k, target) in (i + 1..own).zip(rest.chunks_exact_mut(width)) {
                 let factor = row[k] * inverse[i];
-                magnify(
-                    &mut self.error,
-                    block.equations[order[i]],
-                    block.equations[order[k]],
-                    factor,
-                );
+                magnify(&mut self.error, equation, block.equations[order[k]], factor);
                 for (x, y) in target[k..].iter_mut().zip(&row[k..]) {
                     *x -= factor * y;
                 }

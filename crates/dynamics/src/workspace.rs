@@ -23,6 +23,8 @@ pub struct Counters {
     pub reaction_continuations: u64,
     /// Evaluations at which closure equations were redundant.
     pub redundant: u64,
+    /// Steps of refinement, where loops are eliminated one by one and one of them is nearly singular.
+    pub refinements: u64,
 }
 
 /// The mass matrix in a form that can be solved with.
@@ -30,7 +32,7 @@ pub struct Counters {
 pub(crate) enum MassFactor {
     Composite(Composite),
     Articulated(Articulated),
-    LocalLoops(LocalLoops),
+    LocalLoops(Box<LocalLoops>),
 }
 
 impl MassFactor {
@@ -99,7 +101,7 @@ impl Workspace {
             Formulation::CompositeBody | Formulation::Lagrange => true,
         };
         let mass = if let Some(plan) = plan_of_loops(system) {
-            MassFactor::LocalLoops(LocalLoops::new(tree, plan))
+            MassFactor::LocalLoops(Box::new(LocalLoops::new(tree, plan)))
         } else if composite {
             MassFactor::Composite(Composite::new(tree))
         } else {
@@ -180,6 +182,15 @@ impl Workspace {
     /// Number of closure equations that were redundant at this evaluation.
     pub fn redundant(&self) -> usize {
         self.constraint.redundant()
+    }
+
+    /// Multiplications and additions, nearly, that an evaluation takes for loops eliminated one by one; `None` where all of them are
+    /// solved for at once.
+    pub fn loop_work(&self) -> Option<usize> {
+        match &self.mass {
+            MassFactor::LocalLoops(mass) => Some(mass.work()),
+            MassFactor::Composite(_) | MassFactor::Articulated(_) => None,
+        }
     }
 
     /// Positions of this evaluation.

@@ -148,10 +148,11 @@ impl Closure {
     /// If a link is not of this tree.
     pub fn with_rows(tree: &Tree, predecessor: Attachment, successor: Attachment, rows: Vec<Row>) -> Self {
         let movers = |link: LinkId, other: LinkId| -> Vec<Mover> {
-            // Freedoms below both sides carry the whole loop along and drop out.
+            // Freedoms below both sides carry the whole loop along and drop out. Ways to the ground descend.
+            let below: Vec<usize> = tree.path(other).collect();
             let alone = tree
                 .path(link)
-                .filter(|node| !tree.path(other).any(|below| below == *node));
+                .filter(|node| below.binary_search_by(|below| node.cmp(below)).is_err());
             let mover = |node| Mover {
                 node,
                 speed: tree.nodes()[node].speed,

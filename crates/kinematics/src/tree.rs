@@ -102,6 +102,8 @@ impl Node {
 pub struct Tree {
     nodes: Vec<Node>,
     joints: Vec<(LinkId, Joint)>,
+    /// First coordinate and speed of each joint.
+    firsts: Vec<(usize, usize)>,
     coordinates: usize,
     speeds: usize,
 }
@@ -154,6 +156,7 @@ impl Tree {
         Self {
             nodes: vec![ground],
             joints: Vec::new(),
+            firsts: Vec::new(),
             coordinates: 0,
             speeds: 0,
         }
@@ -173,6 +176,7 @@ impl Tree {
             return Err(TreeError::NotRigid { defect });
         }
         joint.validate()?;
+        self.firsts.push((self.coordinates, self.speeds));
         let mut before = parent.0;
         let mut offset = placement;
         for step in joint.steps() {
@@ -246,28 +250,30 @@ impl Tree {
 
     /// The joint that carries `link`; `None` for the ground.
     pub fn joint_of(&self, link: LinkId) -> Option<Joint> {
-        self.joints.iter().find(|(l, _)| *l == link).map(|(_, joint)| *joint)
+        self.place(link).map(|place| self.joints[place].1)
     }
 
     /// Range of the coordinates of the joint that carries `link`.
     pub fn coordinate_range(&self, link: LinkId) -> std::ops::Range<usize> {
-        self.range(link, Joint::coordinates)
+        let place = self.place(link);
+        place.map_or(self.coordinates..self.coordinates, |place| {
+            let first = self.firsts[place].0;
+            first..first + self.joints[place].1.coordinates()
+        })
     }
 
     /// Range of the speeds of the joint that carries `link`.
     pub fn speed_range(&self, link: LinkId) -> std::ops::Range<usize> {
-        self.range(link, Joint::speeds)
+        let place = self.place(link);
+        place.map_or(self.speeds..self.speeds, |place| {
+            let first = self.firsts[place].1;
+            first..first + self.joints[place].1.speeds()
+        })
     }
 
-    fn range(&self, link: LinkId, count: fn(&Joint) -> usize) -> std::ops::Range<usize> {
-        let mut start = 0;
-        for (l, joint) in &self.joints {
-            if *l == link {
-                return start..start + count(joint);
-            }
-            start += count(joint);
-        }
-        start..start
+    /// Place of a link among the joints, whose links have ascending numbers.
+    fn place(&self, link: LinkId) -> Option<usize> {
+        self.joints.binary_search_by_key(&link.0, |(link, _)| link.0).ok()
     }
 
     /// The nodes that carry a freedom on the way from the ground to `link`, the last first.

@@ -4,13 +4,15 @@ use crate::clearance::ClearanceJoint;
 use crate::drive::CoordinateDrives;
 use crate::error::BuildError;
 use crate::limit::LimitStops;
-use crate::linkage::{JointItem, Linkage, Mount};
+use crate::linkage::{JointItem, LinkHandle, Linkage, Mount};
 use crate::mechanism::{Contact, Mechanism, NamedJoint, NamedLink, NamedLoop};
 use crate::spring::{self, JointSprings};
 use crate::strut::PlacedStrut;
 use linkdyn_dynamics::{Description, Guided, Load, ReactionLoad, RigidInertia, System, SystemError};
 use linkdyn_kinematics::{Attachment, Closure, Joint, LinkId, Pose, Tree};
 use nalgebra::Vector3;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 impl Linkage {
@@ -184,26 +186,24 @@ impl Linkage {
             carriers: Vec::new(),
             frames: vec![None; self.links.len()],
         };
-        let mut hangs = vec![false; self.joints.len()];
+        // By place: the ground, then the links.
+        let place = |link: LinkHandle| link.0.map_or(0, |k| k + 1);
+        let mut carriers: Vec<Option<&JointItem>> = vec![None; 1 + self.links.len()];
+        let mut hanging = vec![Vec::new(); carriers.len()];
         for (k, joint) in self.joints.iter().enumerate() {
-            let carried = |other: &&JointItem| other.successor.link == joint.successor.link;
-            if let Some(first) = self.joints[..k].iter().find(carried) {
+            if let Some(first) = carriers[place(joint.successor.link)].replace(joint) {
                 return Err(BuildError::CarriedTwice {
                     link: self.link_name(joint.successor.link),
                     first: first.name.clone(),
                     second: joint.name.clone(),
                 });
             }
+            hanging[place(joint.predecessor.link)].push(Reverse(k));
         }
-        loop {
-            let next = self.joints.iter().enumerate().find(|(k, joint)| {
-                let reached = match joint.predecessor.link.0 {
-                    None => true,
-                    Some(link) => placed.frames[link].is_some(),
-                };
-                reached && !hangs[*k]
-            });
-            let Some((k, item)) = next else { break };
+        // Joints on links that hang already: the first one described comes next.
+        let mut reached = BinaryHeap::from(std::mem::take(&mut hanging[0]));
+        while let Some(Reverse(k)) = reached.pop() {
+            let item = &self.joints[k];
             let mut base = placed.attachment(&Mount {
                 link: item.predecessor.link,
                 pose: item.predecessor_frame(),
@@ -228,7 +228,7 @@ impl Linkage {
                     });
                 }
             }
-            hangs[k] = true;
+            reached.append(&mut std::mem::take(&mut hanging[place(item.successor.link)]).into());
             placed.order.push(k);
             placed.nodes.push(node);
         }

@@ -244,6 +244,18 @@ pub enum StartError {
     Assembly(#[from] AssemblyError),
 }
 
+impl StartError {
+    /// Which cut joint cannot be closed, as an index into [`Mechanism::loop_names`](crate::Mechanism::loop_names), if it is one.
+    pub fn closure(&self) -> Option<usize> {
+        match self {
+            Self::Assembly(AssemblyError::NotClosed { closure, .. } | AssemblyError::Velocities { closure, .. }) => {
+                Some(*closure)
+            }
+            _ => None,
+        }
+    }
+}
+
 /// Why a mechanism has no accelerations at a state, with the name of the coordinate that the cause speaks of.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}{cause}", .coordinate.as_ref().map_or(String::new(), |name| format!("`{name}`: ")))]

@@ -6,6 +6,7 @@ use linkdyn_dynamics::{DynamicsError, System};
 use linkdyn_friction::Bristle;
 use linkdyn_kinematics::assembly::{self, Assembly, Settings};
 use linkdyn_kinematics::{Attachment, Closure, LinkId, Pose, Positions};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// An immutable mechanism; cheap to clone and to share between threads.
@@ -277,20 +278,25 @@ impl Mechanism {
     /// The speed that belongs to a coordinate (for the quaternion of a ball joint: w, x, y, z to its three speeds).
     pub(crate) fn speed(&self, name: &str) -> Result<usize, StartError> {
         let index = self.index(name)?;
-        let tree = self.system.tree();
-        for (link, _) in tree.joints() {
-            let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
-            if q.contains(&index) {
-                let local = index - q.start;
-                let turned =
-                    before_quaternion(q.len(), v.len()).map_or(local, |slides| match local.checked_sub(slides) {
-                        None => local,
-                        Some(part) => slides + part.saturating_sub(1),
-                    });
-                return Ok(v.start + turned);
-            }
-        }
-        Ok(index)
+        let found = self.ranges().find(|(q, _)| q.contains(&index));
+        Ok(found.map_or(index, |(q, v)| {
+            let local = index - q.start;
+            let turned = before_quaternion(q.len(), v.len()).map_or(local, |slides| match local.checked_sub(slides) {
+                None => local,
+                Some(part) => slides + part.saturating_sub(1),
+            });
+            v.start + turned
+        }))
+    }
+
+    /// Coordinates and speeds of the joints of the tree, one joint after the other.
+    fn ranges(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+        let joints = self.system.tree().joints().iter();
+        joints.scan((0, 0), |(q, v), (_, joint)| {
+            let first = (*q, *v);
+            (*q, *v) = (*q + joint.coordinates(), *v + joint.speeds());
+            Some((first.0..*q, first.1..*v))
+        })
     }
 
     /// The coordinate whose rate a speed is; of a ball joint with a quaternion the part about the speed's axis.
@@ -300,9 +306,7 @@ impl Mechanism {
 
     /// Index of that coordinate.
     pub(crate) fn coordinate_of_speed(&self, speed: usize) -> Option<usize> {
-        let tree = self.system.tree();
-        tree.joints().iter().find_map(|(link, _)| {
-            let (q, v) = (tree.coordinate_range(*link), tree.speed_range(*link));
+        self.ranges().find_map(|(q, v)| {
             let local = speed.checked_sub(v.start).filter(|local| *local < v.len())?;
             let behind = before_quaternion(q.len(), v.len()).is_some_and(|slides| local >= slides);
             Some(q.start + local + usize::from(behind))

@@ -173,9 +173,14 @@ pub(crate) fn ready(scene: Scene) -> Result<Prepared, CliError> {
         .linkage
         .build()
         .map_err(|error| wrong("cannot be built").with_source(error))?;
-    let (start, _) = mechanism
-        .assemble(&scene.start)
-        .map_err(|error| wrong("cannot start").with_source(error))?;
+    let (start, _) = mechanism.assemble(&scene.start).map_err(|error| {
+        let cut = error.closure().and_then(|closure| mechanism.loop_names().nth(closure));
+        let wrong = wrong("cannot start").with_source(error);
+        match cut {
+            Some(cut) => wrong.with_hint(format!("that closure is the cut joint `{cut}`")),
+            None => wrong,
+        }
+    })?;
     Ok(Prepared {
         scene,
         mechanism,

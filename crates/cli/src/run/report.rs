@@ -159,6 +159,7 @@ pub fn manifest(
             "friction_iterations": c.reaction_iterations,
             "friction_continuations": c.reaction_continuations,
             "evaluations_with_redundant_closures": c.redundant,
+            "refinements": c.refinements,
         },
         "worst": {
             "position_drift": outcome.worst.position_drift,

@@ -120,7 +120,8 @@ impl Group {
             && a == b
         {
             meeting = a;
-            (one.pop(), two.pop());
+            one.pop();
+            two.pop();
         }
         one.extend(two);
         Self {
@@ -153,10 +154,8 @@ impl Plan {
             group
         };
         let mut groups: Vec<Group> = system.closures.iter().map(group).collect();
-        for guided in &system.guided {
-            groups.push(Group::of_guide(tree, guided, first));
-            first += 1;
-        }
+        let guided = (system.closure_equations..).zip(&system.guided);
+        groups.extend(guided.map(|(equation, guided)| Group::of_guide(tree, guided, equation)));
         let nodes = tree.nodes().len();
         let mut active = vec![Vec::new(); nodes];
         for (g, group) in groups.iter().enumerate() {

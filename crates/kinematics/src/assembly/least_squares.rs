@@ -34,15 +34,18 @@ impl SingularValues {
         let mut vectors = DMatrix::identity(n, n);
         // Smaller products of columns are rounding of the whole matrix.
         let rounding = (f64::EPSILON * scaled.norm()).powi(2);
-        for _ in 0..ROUNDS {
-            let mut turned = false;
-            for p in 0..n {
-                for q in p + 1..n {
-                    turned |= make_orthogonal(&mut scaled, &mut vectors, p, q, rounding);
+        for together in neighbours(&scaled) {
+            for _ in 0..ROUNDS {
+                let mut turned = false;
+                for (k, &p) in together.columns.iter().enumerate() {
+                    for &q in &together.columns[k + 1..] {
+                        let (a, v) = (&mut scaled, &mut vectors);
+                        turned |= make_orthogonal((a, &together.rows), (v, &together.columns), p, q, rounding);
+                    }
                 }
-            }
-            if !turned {
-                break;
+                if !turned {
+                    break;
+                }
             }
         }
         let values = scaled.column_iter().map(|column| column.norm()).collect();
@@ -92,10 +95,60 @@ impl SingularValues {
     }
 }
 
-/// Turns columns `p` and `q` in their plane until they are orthogonal; tells whether they were not.
-fn make_orthogonal(a: &mut DMatrix<f64>, v: &mut DMatrix<f64>, p: usize, q: usize, rounding: f64) -> bool {
-    let (alpha, beta) = (a.column(p).norm_squared(), a.column(q).norm_squared());
-    let gamma = a.column(p).dot(&a.column(q));
+/// Columns with entries in some rows, in which no other column has any.
+#[derive(Clone, Debug, Default)]
+struct Neighbours {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+}
+
+/// Splits a matrix into what has no row and no column in common: closures of loops without a joint in common need not be looked at
+/// together, and the work grows with the cube of the size.
+fn neighbours(a: &DMatrix<f64>) -> Vec<Neighbours> {
+    // Row by row, the groups of all columns with an entry there become that of the first.
+    let mut group: Vec<usize> = (0..a.ncols()).collect();
+    let mut members: Vec<Vec<usize>> = group.iter().map(|&k| vec![k]).collect();
+    let mut home = vec![None; a.nrows()];
+    for (column, entries) in a.column_iter().enumerate() {
+        for row in (0..a.nrows()).filter(|&row| entries[row] != 0.0) {
+            let Some(one) = home[row] else {
+                home[row] = Some(column);
+                continue;
+            };
+            let (mut to, mut from) = (group[one], group[column]);
+            if to != from {
+                if members[to].len() < members[from].len() {
+                    (to, from) = (from, to);
+                }
+                let moved = std::mem::take(&mut members[from]);
+                moved.iter().for_each(|&k| group[k] = to);
+                members[to].extend(moved);
+            }
+        }
+    }
+    let mut found: Vec<Neighbours> = vec![Neighbours::default(); a.ncols()];
+    (0..a.ncols()).for_each(|column| found[group[column]].columns.push(column));
+    let rows = home.iter().enumerate();
+    rows.for_each(|(row, column)| {
+        if let Some(column) = *column {
+            found[group[column]].rows.push(row);
+        }
+    });
+    found.retain(|neighbours| neighbours.columns.len() > 1);
+    found
+}
+
+/// Turns columns `p` and `q` of `a` in their plane until they are orthogonal, and those of `v` with them; tells whether they were not.
+/// Each matrix comes with the rows in which there is anything.
+fn make_orthogonal(
+    (a, rows): (&mut DMatrix<f64>, &[usize]),
+    (v, others): (&mut DMatrix<f64>, &[usize]),
+    p: usize,
+    q: usize,
+    rounding: f64,
+) -> bool {
+    let product = |p: usize, q: usize| rows.iter().map(|&i| a[(i, p)] * a[(i, q)]).sum::<f64>();
+    let (alpha, beta, gamma) = (product(p, p), product(q, q), product(p, q));
     if gamma.abs() <= (ROUNDING * (alpha * beta).sqrt()).max(rounding) {
         return false;
     }
@@ -103,8 +156,8 @@ fn make_orthogonal(a: &mut DMatrix<f64>, v: &mut DMatrix<f64>, p: usize, q: usiz
     let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
     let cosine = 1.0 / tangent.hypot(1.0);
     let sine = cosine * tangent;
-    for m in [a, v] {
-        for i in 0..m.nrows() {
+    for (m, rows) in [(a, rows), (v, others)] {
+        for &i in rows {
             let (x, y) = (m[(i, p)], m[(i, q)]);
             m[(i, p)] = cosine * x - sine * y;
             m[(i, q)] = sine * x + cosine * y;

@@ -76,10 +76,12 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// The same with speeds that are kept at zero, whatever force that takes: those of prescribed motions, then `more`.
-    pub fn holding(mechanism: &'a Mechanism, more: impl IntoIterator<Item = usize>) -> Result<Self, AnalysisError> {
+    /// The same with speeds that are kept at zero, whatever force that takes: those of prescribed motions, then those of the coordinates
+    /// `named`.
+    pub fn holding(mechanism: &'a Mechanism, named: &[String]) -> Result<Self, AnalysisError> {
         let mut held: Vec<usize> = mechanism.system().guided().iter().map(|guided| guided.speed).collect();
-        for speed in more {
+        for name in named {
+            let (_, speed) = driven(mechanism, name)?;
             if !held.contains(&speed) {
                 held.push(speed);
             }

@@ -2,7 +2,6 @@
 
 use super::balance::{Balance, By, check, number};
 use super::error::AnalysisError;
-use crate::error::StartError;
 use crate::mechanism::{Mechanism, Start, State};
 use linkdyn_kinematics::Positions;
 use linkdyn_kinematics::assembly;
@@ -107,8 +106,7 @@ pub fn equilibrium(mechanism: &Mechanism, q: &[f64], settings: &Settings) -> Res
     if !settings.time.is_finite() {
         return Err(number("time", settings.time, "a finite number"));
     }
-    let more: Result<Vec<usize>, StartError> = settings.held.iter().map(|name| mechanism.speed(name)).collect();
-    let balance = Balance::holding(mechanism, more?)?;
+    let balance = Balance::holding(mechanism, &settings.held)?;
     let held = balance.held_flags();
     let mut rest = Rest {
         balance,

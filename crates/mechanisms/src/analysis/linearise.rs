@@ -3,7 +3,6 @@
 use super::balance::{Balance, By, check, number};
 use super::error::AnalysisError;
 use super::modes::{Mode, general_modes, undamped_modes};
-use crate::error::StartError;
 use crate::mechanism::{Mechanism, State};
 use linkdyn_dynamics::Workspace;
 use nalgebra::DMatrix;
@@ -57,8 +56,7 @@ pub fn holding(mechanism: &Mechanism, t: f64, state: &State, held: &[String]) ->
         return Err(number("t", t, "a finite number"));
     }
     let system = mechanism.system();
-    let more: Result<Vec<usize>, StartError> = held.iter().map(|name| mechanism.speed(name)).collect();
-    let mut balance = Balance::holding(mechanism, more?)?;
+    let mut balance = Balance::holding(mechanism, held)?;
     balance.choose(&state.q, &[])?;
     let still = state.v.iter().all(|v| *v == 0.0);
     let tree = system.tree();
