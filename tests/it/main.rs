@@ -59,4 +59,6 @@ mod scene_examples;
 mod scene_faults;
 mod scene_files;
 mod scene_keys;
+mod scene_schema;
+mod scene_values;
 mod structures;

@@ -1,6 +1,5 @@
-//! Every key of scene files: it is described, read as the same thing is said in Rust, and refused where its value is wrong.
+//! Scene files say what Rust says: loads, stops, motions, beams, frames, starts and runs.
 
-use crate::scene_faults::scenes;
 use linkdyn_contact::{KelvinVoigt, NormalLaw, RestitutionLaw};
 use linkdyn_dynamics::RigidInertia;
 use linkdyn_kinematics::{Joint, Pose};
@@ -10,20 +9,18 @@ use linkdyn_mechanisms::{
     file,
 };
 use nalgebra::{Matrix3, Vector3};
-use serde_json::Value;
-use std::collections::BTreeSet;
 
-fn read(text: &str) -> Scene {
+pub(crate) fn read(text: &str) -> Scene {
     file::scene("file", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-fn faults(text: &str) -> Vec<String> {
+pub(crate) fn faults(text: &str) -> Vec<String> {
     let error = file::scene("file", text).expect_err("broken");
     error.0.iter().map(ToString::to_string).collect()
 }
 
 /// Two bodies in a row, the first on the ground; what stands behind is added to the text.
-const BODIES: &str = r#"
+pub(crate) const BODIES: &str = r#"
 format = 1
 [links]
 one = { mass = 2, centre = [0.1, 0, 0] }
@@ -37,7 +34,7 @@ predecessor = { link = "one", point = [0.2, 0, 0] }
 successor.link = "two"
 "#;
 
-const LOADS: &str = r#"
+pub(crate) const LOADS: &str = r#"
 [forces.push]
 at = { link = "two", point = [0.1, 0, 0], turn = { axis = [0, 0, 1], angle = "90 deg" } }
 direction = [0, 3, 4]
@@ -61,7 +58,7 @@ stiffness = 100
 damping = 3
 "#;
 
-const SITTING: &str = r#"
+pub(crate) const SITTING: &str = r#"
 format = 1
 [links]
 one = { mass = 2, centre = [0.1, 0, 0] }
@@ -93,7 +90,7 @@ successor.link = "four"
 prescribed = { table = { points = [[0, 1], [1, 2], [2, 0]] } }
 "#;
 
-const BEAM: &str = r#"
+pub(crate) const BEAM: &str = r#"
 format = 1
 [links.beam.beam]
 along = "y"
@@ -139,7 +136,7 @@ step = 1e-3
 "#;
 
 /// A pipe that bends, on a slide with all friction there is, and a pin with clearance at its end.
-const REST: &str = r#"
+pub(crate) const REST: &str = r#"
 format = 1
 summary = "all that rubs"
 [links.pipe.beam]
@@ -418,416 +415,5 @@ fn beams_boxes_frames_starts_and_runs_are_those_of_rust() {
     assert_eq!(
         (settings.rtol, settings.atol, settings.step),
         (Some(1e-8), Some(1e-9), None)
-    );
-}
-
-/// A key of the format.
-struct Property<'s> {
-    /// The definition that has it, and its name.
-    name: String,
-    key: &'s str,
-    schema: &'s Value,
-    /// Whether it must be there.
-    required: bool,
-}
-
-/// All keys of the format.
-fn properties(schema: &Value) -> Vec<Property<'_>> {
-    fn walk<'s>(definition: &str, schema: &'s Value, found: &mut Vec<Property<'s>>) {
-        let required = schema["required"].as_array();
-        for (key, property) in schema["properties"].as_object().into_iter().flatten() {
-            let name = format!("{definition}.{key}");
-            walk(&name, property, found);
-            found.push(Property {
-                name,
-                key,
-                schema: property,
-                required: required.is_some_and(|list| list.iter().any(|required| required == key)),
-            });
-        }
-        for list in ["oneOf", "anyOf"] {
-            for choice in schema[list].as_array().into_iter().flatten() {
-                walk(definition, choice, found);
-            }
-        }
-    }
-    let mut found = Vec::new();
-    walk("", schema, &mut found);
-    for (name, definition) in schema["$defs"].as_object().into_iter().flatten() {
-        walk(name, definition, &mut found);
-    }
-    found
-}
-
-#[test]
-fn every_key_is_described_with_unit_and_default() {
-    let schema = file::schema();
-    let all = properties(&schema);
-    assert!(all.len() > 150, "{}", all.len());
-    let mut wrong = Vec::new();
-    for Property {
-        name,
-        key,
-        schema,
-        required,
-    } in all
-    {
-        let text = schema["description"].as_str().unwrap_or_default().to_lowercase();
-        if text.len() < 9 || text.contains('\\') {
-            wrong.push(format!("{name} has no description: {text}"));
-        }
-        let kind = schema.to_string();
-        let number = schema["properties"].is_null() && (kind.contains("\"number\"") || kind.contains("Quantity"));
-        // Only directions are of any unit.
-        if number && !["axis", "second_axis", "direction", "rotation"].contains(&key) && !text.contains('[') {
-            wrong.push(format!("{name} has no unit: {text}"));
-        }
-        let default = ["unless given", "by default", "in place of", "where"];
-        if !required && !default.iter().any(|words| text.contains(words)) {
-            wrong.push(format!("{name} has no default: {text}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong:#?}");
-}
-
-#[test]
-fn every_key_occurs_in_a_sound_file() {
-    let schema = file::schema();
-    let mut texts: Vec<String> = scenes().into_iter().map(|(_, text)| text).collect();
-    texts.extend([&[BODIES, LOADS].concat(), SITTING, BEAM, REST].map(str::to_owned));
-    for text in &texts {
-        let mechanism = read(text).linkage.build().expect("what is read can be built");
-        assert!(mechanism.coordinate_names().count() > 0);
-    }
-    let words: BTreeSet<&str> = texts
-        .iter()
-        .flat_map(|text| text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')))
-        .collect();
-    for Property { name, key, .. } in properties(&schema) {
-        assert!(words.contains(key), "no file has {name}");
-    }
-}
-
-/// Walks through all that a file may hold by its schema, with a value at each place that none may have.
-struct Refusals<'s> {
-    schema: &'s Value,
-    /// How many places there were.
-    places: usize,
-}
-
-impl<'s> Refusals<'s> {
-    /// The schemas any of which a value may have, without that of its absence.
-    fn choices(&self, schema: &'s Value) -> Vec<&'s Value> {
-        if let Some(path) = schema["$ref"].as_str() {
-            let target = self.schema.pointer(path.trim_start_matches('#')).expect("a definition");
-            return self.choices(target);
-        }
-        match schema["anyOf"].as_array().or(schema["oneOf"].as_array()) {
-            Some(list) => list.iter().flat_map(|choice| self.choices(choice)).collect(),
-            None => vec![schema],
-        }
-    }
-
-    /// The places at and below `path`; `around` makes a file of what stands there.
-    fn at(&mut self, schema: &'s Value, path: &str, around: &dyn Fn(&str) -> String) {
-        if !path.is_empty() {
-            self.places += 1;
-            let text = around("1979-05-27");
-            let words = format!("`{path}`: must be ");
-            let found = faults(&text);
-            let told = found
-                .iter()
-                .any(|fault| fault.contains(&words) && fault.ends_with("not a date"));
-            assert!(told, "{text}: {found:#?}");
-        }
-        for choice in self.choices(schema) {
-            let mut below = |name: &str, entry: &'s Value| {
-                let inner = format!("{path}{}{name}", if path.is_empty() { "" } else { "." });
-                let within = |value: &str| match path {
-                    "" => format!("{name} = {value}"),
-                    _ => around(&format!("{{ {name} = {value} }}")),
-                };
-                self.at(entry, &inner, &within);
-            };
-            for (name, entry) in choice["properties"].as_object().into_iter().flatten() {
-                below(name, entry);
-            }
-            if choice["additionalProperties"].is_object() {
-                below("any", &choice["additionalProperties"]);
-            }
-            if choice["type"] == "array" && choice["minItems"].is_null() {
-                self.at(&choice["items"], &format!("{path}[0]"), &|value| {
-                    around(&format!("[{value}]"))
-                });
-            }
-        }
-    }
-}
-
-#[test]
-fn every_key_is_refused_where_its_value_is_of_the_wrong_kind() {
-    let schema = file::schema();
-    let mut refusals = Refusals {
-        schema: &schema,
-        places: 0,
-    };
-    refusals.at(&schema, "", &str::to_owned);
-    assert!(refusals.places > 250, "{}", refusals.places);
-}
-
-/// Replaces a text by a wrong one and expects one fault with these words.
-fn assert_refused(text: &str, changes: &[(&str, &str, &str)]) {
-    read(text);
-    for (sound, wrong, words) in changes {
-        assert!(text.contains(sound), "{sound}");
-        let found = faults(&text.replacen(sound, wrong, 1));
-        assert!(found.len() == 1 && found[0].contains(words), "`{words}`: {found:#?}");
-    }
-}
-
-#[test]
-fn values_that_make_no_sense_are_refused_by_key_and_value() {
-    assert_refused(
-        &[BODIES, LOADS].concat(),
-        &[
-            (
-                "direction = [0, 3, 4]",
-                "direction = [0, 0, 0]",
-                "`forces.push.direction`: its length 0 must be",
-            ),
-            (
-                "direction = [0, 3, 4]",
-                "direction = [nan, 0, 0]",
-                "`forces.push.direction`: its length NaN must be",
-            ),
-            (
-                "frequency = 3",
-                "frequency = inf",
-                "`forces.push.drives[0].harmonic.frequency`: frequency = inf must be",
-            ),
-            (
-                "[2, 0]]",
-                "[0, 0]]",
-                "`forces.push.drives[2].table.points`: node = 0 must be a node behind the one before",
-            ),
-            (
-                "torque = 5",
-                "torque = nan",
-                "`moments.twist.drives[0].constant.torque`: torque = NaN must be",
-            ),
-            (
-                "axes = \"link\"",
-                "axes = \"lonk\"",
-                "`forces.push.axes`: there is no word `lonk`; did you mean `link`?",
-            ),
-            (
-                "at = { link = \"two\"",
-                "at = { link = \"twa\"",
-                "`forces.push.at.link`: there is no link `twa`; did you mean `two`?",
-            ),
-            (
-                "at.link = \"one\"",
-                "at.point = [0, 0, 1]",
-                "`moments.twist.at`: is on the ground, where it does nothing",
-            ),
-            (
-                "at = { link = \"two\"",
-                "at = { end = true, link = \"two\"",
-                "`forces.push.at.end`: only a beam has an end",
-            ),
-            (
-                "to = { link = \"two\"",
-                "to = { link = \"ground\"",
-                "`struts.spring.to`: is on the same link as `from`",
-            ),
-            (
-                "free_length = 0.5",
-                "free_length = -0.5",
-                "`struts.spring.free_length`: free_length = -0.5 must be",
-            ),
-            (
-                "stiffness = 100",
-                "stiffness = nan",
-                "`struts.spring.stiffness`: stiffness = NaN must be",
-            ),
-            (
-                "damping = 3",
-                "damping = -3",
-                "`struts.spring.damping`: damping = -3 must be",
-            ),
-            (
-                "[moments.twist]",
-                "[moments.push]",
-                "`moments.push`: the name `push` is used twice",
-            ),
-            (
-                "[struts.spring]",
-                "[struts.push]",
-                "`struts.push`: the name `push` is used twice",
-            ),
-            (
-                "[struts.spring]",
-                "[struts.twist]",
-                "`struts.twist`: the name `twist` is used twice",
-            ),
-        ],
-    );
-    // Joints and links are other things than loads and may be called alike.
-    read(&[BODIES, &LOADS.replace("spring", "A").replace("twist", "one")].concat());
-    assert_refused(
-        SITTING,
-        &[
-            (
-                "lower = \"-90 deg\"",
-                "lower = 2",
-                "`joints.A.limit`: the stops 2 and 1 must be finite, the lower below the upper",
-            ),
-            (
-                "lower = \"-90 deg\", upper = 1,",
-                "",
-                "`joints.A.limit`: give a lower stop, an upper stop or both",
-            ),
-            ("upper = 0.2", "upper = nan", "`joints.C.limit`: the stops"),
-            (
-                "stiffness = 1e4",
-                "stiffness = 0",
-                "`joints.A.limit.contact`: stiffness is 0",
-            ),
-            (
-                "exponent = 2",
-                "exponent = 0.5",
-                "`joints.C.limit.contact`: exponent is 0.5",
-            ),
-            (
-                "least_impact_speed = 1e-4",
-                "least_impact_speed = 0",
-                "`joints.C.limit.contact`: least_impact_speed is 0",
-            ),
-            (
-                "rest = \"90 deg\"",
-                "rest = inf",
-                "`joints.A.springs[0].rest`: rest = inf must be",
-            ),
-            (
-                "rest = \"90 deg\"",
-                "rest = \"90 dog\"",
-                "`joints.A.springs[0].rest`: must be a number or degrees like \"30 deg\"",
-            ),
-            ("lead = 0.01", "lead = nan", "`joints.B.lead`: NaN"),
-            ("lead = 0.01", "", "`joints.B`: a screw needs its `lead`"),
-            (
-                "kind = \"prismatic\"",
-                "kind = \"prismatic\"\nlead = 1",
-                "`joints.C.lead`: 1",
-            ),
-            (
-                "coefficients = [0.5, 1, -2]",
-                "coefficients = []",
-                "`joints.B.prescribed.polynomial.coefficients`: coefficients = 0 must be at least one coefficient",
-            ),
-            (
-                "coefficients = [0.5, 1, -2]",
-                "coefficients = [inf]",
-                "`joints.B.prescribed.polynomial.coefficients`: coefficient = inf must be",
-            ),
-            (
-                "frequency = 2",
-                "frequency = nan",
-                "`joints.A.prescribed.harmonic.frequency`: frequency = NaN must be",
-            ),
-            (
-                "speeds = { points = [[0, 1], [1, 2], [2, 0]] }",
-                "speeds = { points = [[0, 1]] }",
-                "`joints.C.prescribed.speeds.points`: nodes = 1 must be at least two nodes",
-            ),
-            (
-                "table = { points = [[0, 1], [1, 2]",
-                "table = { points = [[0, 1], [1]",
-                "`joints.D.prescribed.table.points[1]`: must have 2 entries, not 1",
-            ),
-            (
-                "harmonic = {",
-                "harmonik = {",
-                "there is no key `harmonik`; did you mean `harmonic`?",
-            ),
-        ],
-    );
-    assert_refused(
-        BEAM,
-        &[
-            (
-                "elements = 3",
-                "elements = 0",
-                "`links.beam.beam.elements`: 0 must lie between 1 and 500",
-            ),
-            (
-                "size = [0.1, 0.1, 0.1]",
-                "size = [0.1, 0, 0.1]",
-                "`links.tip.box.size`: 0 must be",
-            ),
-            (
-                "predecessor = { link = \"beam\", end",
-                "predecessor = { link = \"ground\", end",
-                "`joints.B.predecessor.end`: only a beam has an end",
-            ),
-            (
-                "relaxation_time = 1e-4",
-                "relaxation_time = -1",
-                "`links.beam.beam.relaxation_time`: material.relaxation_time is -1",
-            ),
-            ("height = 0.02", "height = 0", "`links.beam.beam.section`: height is 0"),
-            (
-                "until = 3",
-                "until = -3",
-                "`run.until`: -3 s must be a finite positive number",
-            ),
-            (
-                "every = 0.1",
-                "every = 0",
-                "`run.every`: 0 s must be a finite positive number",
-            ),
-            (
-                "step = 1e-3",
-                "step = nan",
-                "`run.step`: NaN s must be a finite positive number",
-            ),
-            ("step = 1e-3", "rtol = 1e-3", "`run.rtol`: does not go with the method"),
-            (
-                "method = \"newmark\"",
-                "method = \"newmarc\"",
-                "`run.method`: there is no word `newmarc`; did you mean `newmark`?",
-            ),
-            (
-                "crank = \"B.psi\"",
-                "crank = \"B.psy\"",
-                "`run.crank`: there is no coordinate `B.psy`; did you mean `B.psi`?",
-            ),
-            (
-                "\"sway.3\"",
-                "\"sway.4\"",
-                "`start.speeds.sway.4`: there is no coordinate `sway.4`",
-            ),
-            (
-                "[links.tip.box]",
-                "[links.\"beam,1\"]\nmass = 1\n[joints.C]\nkind = \"revolute\"\nsuccessor.link = \"beam,1\"\n[links.tip.box]",
-                "the name `beam,1` is used twice",
-            ),
-            (
-                "[joints.A]",
-                "[joints.\"beam.2\"]",
-                "`joints.beam.2`: the name `beam.2` is used twice",
-            ),
-        ],
-    );
-    let second = BEAM.replace("elements = 3", "elements = 300")
-        + "[links.more.beam]\nlength = 1\nsection.circle.diameter = 0.1\n\
-        density = 1000\nyoungs_modulus = 1e9\npoissons_ratio = 0.3\nelements = 200\n[joints.more]\nkind = \"fixed\"\nsuccessor.link = \"more\"\n";
-    assert_refused(
-        &second,
-        &[(
-            "elements = 200",
-            "elements = 201",
-            "`links.more.beam.elements`: makes 501 elements in all beams up to here, more than 500",
-        )],
     );
 }
