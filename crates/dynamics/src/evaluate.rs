@@ -218,8 +218,8 @@ impl System {
                 let (columns, biases) = (&mut work.columns, &work.biases);
                 let gamma = &mut work.constraint.gamma[range.clone()];
                 if let MassFactor::LocalLoops(mass) = &mut work.mass {
-                    let put = |speed, equation, value| mass.put(number, speed, equation, value);
-                    closure.gradient_and_bias(positions, velocities, biases, put, gamma);
+                    mass.put_closure(number, |put| closure.gradient(positions, put));
+                    closure.bias(positions, velocities, biases, gamma);
                 } else {
                     let put = |speed, equation, value| *columns.at_mut(speed, 1 + first + equation) = value;
                     closure.gradient_and_bias(positions, velocities, biases, put, gamma);

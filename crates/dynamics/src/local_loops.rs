@@ -100,6 +100,12 @@ impl LocalLoops {
         }
     }
 
+    /// Sets the closure gradient of a closure as `gradient` tells it.
+    #[inline(never)]
+    pub fn put_closure(&mut self, closure: usize, gradient: impl FnOnce(&mut dyn FnMut(usize, usize, f64))) {
+        gradient(&mut |speed, equation, value| self.put(closure, speed, equation, value));
+    }
+
     pub fn inverse_diagonal(&self) -> &[f64] {
         self.articulated.inverse_diagonal()
     }

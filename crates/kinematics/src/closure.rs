@@ -243,8 +243,9 @@ impl Closure {
         positions.0[attachment.link.node()].rotation * (attachment.pose.rotation * local)
     }
 
-    /// How far the successor is turned about `axis`, a unit vector of both frames.
-    #[inline]
+    /// How far the successor is turned about `axis`, a unit vector of both frames. Screws are rare: out of the way of the others.
+    #[cold]
+    #[inline(never)]
     fn turned(&self, axis: &Vector3<f64>, positions: &Positions) -> Turned {
         let (e1, e2) = plane_of(&Unit::new_unchecked(*axis));
         let across = |side| [e1, e2].map(|e| self.direction(side, positions, &e));

@@ -175,9 +175,8 @@ impl Tree {
             }
             Freedom::Linear => linear += w.cross(&here.axis) * (2.0 * v[node.speed]),
             Freedom::Screw { pitch } => {
-                let turning = w.cross(&here.axis) * v[node.speed];
-                angular += turning;
-                linear += turning * (2.0 * pitch);
+                let carried = Twist { angular, linear };
+                return screw_bias(carried, &w.cross(&here.axis), pitch, v[node.speed]);
             }
         }
         Twist { angular, linear }
@@ -195,6 +194,16 @@ impl Tree {
         let first = self.nodes()[i].speed - k;
         (k..3).fold(*before, |w, axis| w + rotation.column(axis) * v[first + axis])
     }
+}
+
+/// Adds what a screw does whose axis turns at the rate `axis_rate`. Screws are rare: out of the way of the others.
+#[cold]
+#[inline(never)]
+fn screw_bias(mut carried: Twist, axis_rate: &Vector3<f64>, pitch: f64, speed: f64) -> Twist {
+    let turning = axis_rate * speed;
+    carried.angular += turning;
+    carried.linear += turning * (2.0 * pitch);
+    carried
 }
 
 /// Places node `i` on the node before.

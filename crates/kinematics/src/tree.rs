@@ -48,6 +48,15 @@ pub struct Node {
     pub(crate) motion: Motion,
 }
 
+/// Screws are rare: out of the way of the others.
+#[cold]
+#[inline(never)]
+fn advance_screw(axis: &Vector3<f64>, rate: f64, pitch: f64, twist: &mut Twist) {
+    let step = axis * rate;
+    twist.angular += step;
+    twist.linear += step * pitch;
+}
+
 impl Node {
     /// Motion of the node for a unit speed of its freedom, at its origin; `axis` is the node's.
     #[inline]
@@ -70,11 +79,7 @@ impl Node {
             Freedom::None => {}
             Freedom::Angular => twist.angular += axis * rate(self.speed),
             Freedom::Linear => twist.linear += axis * rate(self.speed),
-            Freedom::Screw { pitch } => {
-                let step = axis * rate(self.speed);
-                twist.angular += step;
-                twist.linear += step * pitch;
-            }
+            Freedom::Screw { pitch } => advance_screw(axis, rate(self.speed), pitch, twist),
         }
     }
 

@@ -23,12 +23,14 @@ impl Turned {
     }
 
     /// Angle of the second frame against the first, from -pi to pi.
+    #[inline(never)]
     pub fn angle(&self) -> f64 {
         let (s, c) = self.sine_and_cosine(Vector3::dot);
         s.atan2(c)
     }
 
     /// The vector `t` in `angle' = t . (w_one - w_two)`; zero where the axes are opposite and there is no angle.
+    #[inline(never)]
     pub fn gradient(&self) -> Vector3<f64> {
         let (s, c) = self.sine_and_cosine(Vector3::dot);
         let (ds, dc) = self.sine_and_cosine(Vector3::cross);
@@ -36,11 +38,13 @@ impl Turned {
     }
 
     /// Rate for the angular velocities of both frames.
+    #[inline(never)]
     pub fn rate(&self, w_one: &Vector3<f64>, w_two: &Vector3<f64>) -> f64 {
         self.gradient().dot(&(w_one - w_two))
     }
 
     /// Second rate for angular velocities `w` and accelerations `a` of both frames.
+    #[inline(never)]
     pub fn bias(&self, [w_one, w_two]: [&Vector3<f64>; 2], [a_one, a_two]: [&Vector3<f64>; 2]) -> f64 {
         let (s, c) = self.sine_and_cosine(Vector3::dot);
         let between = w_one - w_two;

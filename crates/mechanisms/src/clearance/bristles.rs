@@ -30,8 +30,9 @@ impl Clearance {
         }
     }
 
-    /// Coefficients and rates at a touch for the states `z`; `axes` are those of the bearing.
-    pub(super) fn rubbing(&self, touch: &Touch, pair: &Pair, axes: &Matrix3<f64>, z: &[f64]) -> Rubbing {
+    /// Coefficients and rates at a touch for the states `z`; `axes` are those of the bearing, asked for where they count.
+    #[inline]
+    pub(super) fn rubbing(&self, touch: &Touch, pair: &Pair, axes: impl Fn() -> Matrix3<f64>, z: &[f64]) -> Rubbing {
         let (mut coefficients, mut rates) = ([0.0; 2], [0.0; 3]);
         match (&self.friction, z) {
             (Some(model), &[z]) => {
@@ -45,6 +46,7 @@ impl Clearance {
                 rates[..2].copy_from_slice(&at.rate);
             }
             (Some(model), &[x, y, z]) => {
+                let axes = axes();
                 let lean = axes * Vector3::new(x, y, z);
                 let parts = [lean.dot(&touch.tangent), lean.dot(&touch.axis)];
                 let at = model.at_planar([touch.slip, touch.axial_slip], parts);

@@ -164,7 +164,7 @@ impl ContactLoad for ClearanceJoint {
         if impact_speed > 0.0
             && let Some(touch) = self.touches_or_none(&pair)[point]
         {
-            let rubbing = self.clearance.rubbing(&touch, &pair, &axes, bristles);
+            let rubbing = self.clearance.rubbing(&touch, &pair, || axes, bristles);
             seen.normal = self.normal(&touch, impact_speed).value;
             let directions = |parts| self.clearance.in_directions(&touch, &axes, parts);
             seen.tangent = directions(rubbing.coefficients.map(|mu| mu * seen.normal));
@@ -213,14 +213,14 @@ impl Load for ClearanceJoint {
         if free {
             return;
         }
-        let (bristles, axes) = (self.clearance.directions(), self.axes(motion.positions));
+        let bristles = self.clearance.directions();
         for (point, touch) in touches.iter().enumerate().take(points) {
             let (z, impact_speed) = self.kept(motion, point);
             let (Some(touch), true) = (touch, impact_speed > 0.0) else {
                 continue;
             };
             let normal = self.normal(touch, impact_speed);
-            let rubbing = self.clearance.rubbing(touch, &pair, &axes, z);
+            let rubbing = self.clearance.rubbing(touch, &pair, || self.axes(motion.positions), z);
             loads.state_rates[point * bristles..(point + 1) * bristles].copy_from_slice(&rubbing.rates[..bristles]);
             if normal.value == 0.0 && normal.elastic == 0.0 {
                 continue;
