@@ -107,6 +107,7 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
     let others = compare(args, &plan, grid, &variant, &record, &interrupt);
     draw(&prepared, &args.scene, &variant, &record, &others, &mut folder)?;
 
+    outcome.lost = record.energy_lost();
     let summary = report::summary(&prepared.scene, &prepared.mechanism, &record, &outcome);
     let manifest = report::manifest(&prepared.scene, &plan, grid, &columns, &summary, &outcome);
     let placed = folder.commit(&manifest)?;
@@ -116,7 +117,10 @@ pub fn run(args: &RunArgs) -> Result<(), CliError> {
         output::print(&format!("{}\nresults in {}\n", summary.to_text(), shown(&placed)))?;
     }
     match ended {
-        Ok(()) => Ok(()),
+        Ok(()) => outcome.lost.map_or(Ok(()), |message| {
+            let hint = "a singular position where branches meet, or steps too long; try other methods, tolerances or a fixed step";
+            Err(CliError::failed(message).with_hint(hint))
+        }),
         Err(RunError::Stopped { time }) => Err(CliError::interrupted(format!(
             "stopped at t = {time} s; the rows up to there are written"
         ))),
@@ -218,6 +222,7 @@ fn simulate(
         wall: begun.elapsed(),
         rows: 0,
         failure: ended.as_ref().err().map(ToString::to_string),
+        lost: None,
     };
     Ok((record, outcome, ended))
 }

@@ -30,6 +30,8 @@ pub struct Outcome {
     pub rows: u64,
     /// Why the run ended early, if it did.
     pub failure: Option<String>,
+    /// Why a run that reached its end means nothing, if so.
+    pub lost: Option<String>,
 }
 
 /// What happened, in figures.
@@ -135,7 +137,7 @@ pub fn manifest(
     let c = &outcome.counters;
     json!({
         "status": if outcome.failure.is_some() { "partial" } else { "complete" },
-        "failure": outcome.failure,
+        "failure": outcome.failure.as_ref().or(outcome.lost.as_ref()),
         "scene": scene,
         "until": grid.0,
         "every": grid.1,
