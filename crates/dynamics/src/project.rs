@@ -3,6 +3,7 @@
 use crate::system::System;
 use crate::workspace::{MassFactor, Workspace};
 use linkdyn_kinematics::Wrench;
+use linkdyn_kinematics::assembly::{largest, rates, residuals};
 
 /// Residuals below this share of the largest distance from the origin (or of 1 m) are rounding and are left alone.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -126,22 +127,15 @@ impl System {
 
     /// Residuals into `lambda`; returns the largest.
     fn residual(&self, t: f64, q: &[f64], work: &mut Workspace) -> f64 {
-        let mut first = 0;
-        for closure in &self.closures {
-            closure.residual(&work.positions, &mut work.constraint.lambda[first..]);
-            first += closure.equations();
-        }
+        residuals(&self.closures, &work.positions, &mut work.constraint.lambda);
         self.guide_residuals(t, q, work);
         largest(&work.constraint.lambda)
     }
 
     /// Rates into `lambda`; returns the largest.
     fn rate(&self, t: f64, v: &[f64], work: &mut Workspace) -> f64 {
-        let mut first = 0;
-        for closure in &self.closures {
-            closure.rate(&work.positions, &work.velocities, &mut work.constraint.lambda[first..]);
-            first += closure.equations();
-        }
+        let (positions, velocities) = (&work.positions, &work.velocities);
+        rates(&self.closures, positions, velocities, &mut work.constraint.lambda);
         self.guide_rates(t, v, work);
         largest(&work.constraint.lambda)
     }
@@ -206,10 +200,4 @@ impl System {
             *rate = work.solutions.at(i, 0);
         }
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |s, x| if x.is_nan() { f64::NAN } else { f64::max(s, x.abs()) })
 }

@@ -3,7 +3,7 @@
 mod least_squares;
 
 use crate::closure::Closure;
-use crate::motion::Positions;
+use crate::motion::{Positions, Velocities};
 use crate::tree::Tree;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
@@ -142,13 +142,30 @@ pub fn equations(closures: &[Closure]) -> usize {
     closures.iter().map(Closure::equations).sum()
 }
 
-/// Residuals of all closures, one after the other.
+/// Residuals of all closures, one after the other \[m, -\].
 pub fn residuals(closures: &[Closure], positions: &Positions, phi: &mut [f64]) {
     let mut first = 0;
     for closure in closures {
         closure.residual(positions, &mut phi[first..]);
         first += closure.equations();
     }
+}
+
+/// Rates of all closures, one after the other \[m/s, 1/s\].
+pub fn rates(closures: &[Closure], positions: &Positions, velocities: &Velocities, rates: &mut [f64]) {
+    let mut first = 0;
+    for closure in closures {
+        closure.rate(positions, velocities, &mut rates[first..]);
+        first += closure.equations();
+    }
+}
+
+/// Largest size of residuals or rates, in their unit; not a number if one of them is none.
+pub fn largest(values: &[f64]) -> f64 {
+    // Not a number is never less, and stays.
+    values
+        .iter()
+        .fold(0.0, |s, x| if x.abs() <= s || s.is_nan() { s } else { x.abs() })
 }
 
 /// Gradient `G` of all closures (equations x speeds).
@@ -349,5 +366,17 @@ fn branch(g: &DMatrix<f64>) -> Branch {
         Branch::Positive
     } else {
         Branch::Negative
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest;
+
+    #[test]
+    fn what_is_no_number_is_the_largest() {
+        assert_eq!(largest(&[]), 0.0);
+        assert_eq!(largest(&[1.0, -3.0, 2.0]), 3.0);
+        assert!(largest(&[f64::NAN, 1.0]).is_nan() && largest(&[1.0, f64::NAN]).is_nan());
     }
 }

@@ -452,21 +452,14 @@ fn violation(mechanism: &Mechanism, q: &[f64], v: Option<&[f64]>) -> (f64, f64) 
     let tree = system.tree();
     let (mut positions, mut velocities) = (Positions::new(tree), Velocities::new(tree));
     tree.positions(q, &mut positions);
-    let (mut residual, mut rate) = (0.0, 0.0);
-    let worst = |rows: &[f64], so_far: f64| {
-        rows.iter()
-            .fold(so_far, |s, x| if x.abs() <= s || s.is_nan() { s } else { x.abs() })
-    };
-    for closure in system.closures() {
-        let mut rows = vec![0.0; closure.equations()];
-        closure.residual(&positions, &mut rows);
-        residual = worst(&rows, residual);
-        if let Some(v) = v {
-            tree.velocities(&positions, v, &mut velocities);
-            closure.rate(&positions, &velocities, &mut rows);
-            rate = worst(&rows, rate);
-        }
-    }
+    let mut rows = vec![0.0; assembly::equations(system.closures())];
+    assembly::residuals(system.closures(), &positions, &mut rows);
+    let residual = assembly::largest(&rows);
+    let rate = v.map_or(0.0, |v| {
+        tree.velocities(&positions, v, &mut velocities);
+        assembly::rates(system.closures(), &positions, &velocities, &mut rows);
+        assembly::largest(&rows)
+    });
     (residual, rate)
 }
 
