@@ -196,9 +196,7 @@ impl Mechanism {
             q[self.index(name)?] = *value;
         }
         let mut held = self.held(&start.held)?;
-        for guided in self.system.guided().iter().filter(|guided| !guided.speed_only) {
-            (q[guided.coordinate], held[guided.speed]) = (guided.guide.at(0.0)[0], true);
-        }
+        self.follow_prescribed(0.0, &mut q, &mut held);
         let mut v = vec![0.0; tree.speeds()];
         let mut given = held.clone();
         for (name, value) in &start.speeds {
@@ -230,6 +228,13 @@ impl Mechanism {
         }
     }
 
+    /// Puts coordinates with prescribed positions where they are at time `t` \[s\], and flags their speeds as held.
+    pub(crate) fn follow_prescribed(&self, t: f64, q: &mut [f64], held: &mut [bool]) {
+        for guided in self.system.guided().iter().filter(|guided| !guided.speed_only) {
+            (q[guided.coordinate], held[guided.speed]) = (guided.guide.at(t)[0], true);
+        }
+    }
+
     /// A start must not say of a prescribed coordinate what its motion does not.
     fn check_prescribed(&self, start: &Start, q: &[f64], v: &[f64]) -> Result<(), StartError> {
         for guided in self.system.guided() {
@@ -241,11 +246,13 @@ impl Mechanism {
                 ("speed", told(&start.speeds), v[guided.speed]),
             ];
             for (what, given, prescribed) in pairs {
-                if given.is_some_and(|given| (given - prescribed).abs() > 1e-9 * prescribed.abs().max(1.0)) {
+                // Numbers that a person has rounded to nine digits are the same.
+                let differs = |given: &f64| (given - prescribed).abs() > 1e-9 * prescribed.abs().max(1.0);
+                if let Some(given) = given.filter(differs) {
                     return Err(StartError::Prescribed {
                         coordinate: name.clone(),
                         what,
-                        given: given.unwrap_or(f64::NAN),
+                        given,
                         prescribed,
                     });
                 }

@@ -81,9 +81,7 @@ pub fn branches(mechanism: &Mechanism, start: &Start, search: &Search) -> Result
         base[mechanism.index(name)?] = *value;
     }
     let mut held = mechanism.held(&start.held)?;
-    for guided in mechanism.system().guided().iter().filter(|guided| !guided.speed_only) {
-        (base[guided.coordinate], held[guided.speed]) = (guided.guide.at(0.0)[0], true);
-    }
+    mechanism.follow_prescribed(0.0, &mut base, &mut held);
     let size = size(mechanism);
     let reach = search.reach.unwrap_or(size);
     let free: Vec<usize> = (0..tree.speeds()).filter(|&speed| !held[speed]).collect();

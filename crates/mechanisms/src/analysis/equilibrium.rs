@@ -181,10 +181,8 @@ pub fn settled(mechanism: &Mechanism, start: &Start, settings: &Settings) -> Res
 /// The position `q` with prescribed coordinates where they are at time `t`.
 fn guided(mechanism: &Mechanism, q: &[f64], t: f64, held: &[bool]) -> Result<Vec<f64>, AnalysisError> {
     let system = mechanism.system();
-    let mut guess = q.to_vec();
-    for guided in system.guided().iter().filter(|guided| !guided.speed_only) {
-        guess[guided.coordinate] = guided.guide.at(t)[0];
-    }
+    let (mut guess, mut held) = (q.to_vec(), held.to_vec());
+    mechanism.follow_prescribed(t, &mut guess, &mut held);
     if guess == q {
         return Ok(guess);
     }
@@ -192,7 +190,7 @@ fn guided(mechanism: &Mechanism, q: &[f64], t: f64, held: &[bool]) -> Result<Vec
         system.tree(),
         system.closures(),
         &guess,
-        held,
+        &held,
         &assembly::Settings::default(),
     );
     Ok(closed?.q)
