@@ -69,40 +69,26 @@ impl Linkage {
             .collect();
         let frame = |link: LinkHandle| link.0.map_or_else(Pose::identity, |k| links[k].frame);
         let on = |mount: &Mount| frame(mount.link) * mount.pose;
+        let place = |name: &str, joint, kind, clearance, mounts: [&Mount; 2]| PlacedJoint {
+            name: name.to_owned(),
+            joint,
+            kind,
+            clearance,
+            links: mounts.map(|mount| mount.link.0),
+            frames: mounts.map(on),
+        };
         let carrying = self.joints.iter().map(|j| {
-            let kind = described(j);
-            (
-                &j.name,
-                j.joint,
-                kind,
-                j.clearance.is_some(),
-                [&j.predecessor, &j.successor],
-            )
+            let mounts = [&j.predecessor, &j.successor];
+            place(&j.name, j.joint, described(j), j.clearance.is_some(), mounts)
         });
         let cut = self.cuts.iter().map(|c| {
-            let kind = described_cut(c);
-            (
-                &c.name,
-                c.joint,
-                kind,
-                c.clearance.is_some(),
-                [&c.predecessor, &c.successor],
-            )
+            let mounts = [&c.predecessor, &c.successor];
+            place(&c.name, c.joint, described_cut(c), c.clearance.is_some(), mounts)
         });
-        let joints = carrying
-            .chain(cut)
-            .map(|(name, joint, kind, clearance, mounts)| PlacedJoint {
-                name: name.clone(),
-                joint,
-                kind,
-                clearance,
-                links: mounts.map(|mount| mount.link.0),
-                frames: mounts.map(on),
-            });
         let end = |mount: &Mount| (mount.link.0, on(mount).origin);
         let struts = self.struts.iter().map(|(_, strut)| [end(&strut.from), end(&strut.to)]);
         Skeleton {
-            joints: joints.collect(),
+            joints: carrying.chain(cut).collect(),
             struts: struts.collect(),
             links,
         }
