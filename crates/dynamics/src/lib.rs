@@ -32,7 +32,9 @@ pub use energy::Energy;
 pub use error::{DynamicsError, SystemError};
 pub use guide::{Guide, Guided};
 pub use inertia::{InertiaError, RigidInertia};
-pub use load::{Capacity, Instant, InternalState, Internals, Load, Loads, Motion, Reaction, ReactionLoad, Supports};
+pub use load::{
+    Capacity, Instant, InternalState, Internals, Load, Loads, Motion, Moving, Reaction, ReactionLoad, Supports,
+};
 pub use project::Drift;
 pub use system::{Baumgarte, Description, Formulation, Place, ReactionSolver, System};
 pub use terms::MotionTerms;

@@ -1,6 +1,7 @@
 //! Loads: whatever pushes links and joints apart from weight and the reactions of joints.
 
-use linkdyn_kinematics::{LinkId, Positions, Velocities, Wrench};
+use linkdyn_kinematics::{Attachment, LinkId, Positions, Velocities, Wrench};
+use nalgebra::Vector3;
 use std::fmt::Debug;
 
 /// What a load may look at.
@@ -18,6 +19,32 @@ pub struct Motion<'a> {
     pub velocities: &'a Velocities,
     /// Internal states and memory of the load that is asked; empty for those that have none.
     pub internal: InternalState<'a>,
+}
+
+impl Motion<'_> {
+    /// How the origin of a frame on a link moves, in global axes.
+    #[inline]
+    pub fn origin(&self, frame: &Attachment) -> Moving {
+        let node = &self.positions.nodes()[frame.link.node()];
+        let twist = &self.velocities.nodes()[frame.link.node()];
+        let arm = node.rotation * frame.pose.origin;
+        Moving {
+            arm,
+            point: node.origin + arm,
+            velocity: twist.linear + twist.angular.cross(&arm),
+        }
+    }
+}
+
+/// A point of a link in motion, global axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moving {
+    /// From the origin of the link \[m\]: the arm of forces that are [added](Loads::add_wrench) there.
+    pub arm: Vector3<f64>,
+    /// Where it is \[m\].
+    pub point: Vector3<f64>,
+    /// Its velocity \[m/s\].
+    pub velocity: Vector3<f64>,
 }
 
 /// A state of a system at a time, with all that its loads keep.

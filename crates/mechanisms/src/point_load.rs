@@ -2,7 +2,7 @@
 
 use crate::drive::Drive;
 use crate::linkage::Mount;
-use linkdyn_dynamics::{Load, Loads, Motion};
+use linkdyn_dynamics::{Load, Loads, Motion, Moving};
 use linkdyn_kinematics::{Attachment, Wrench};
 use nalgebra::Vector3;
 
@@ -76,16 +76,15 @@ impl PointLoad {
 
 impl Load for PlacedLoad {
     fn apply(&self, motion: &Motion<'_>, loads: &mut Loads<'_>) {
-        let node = &motion.positions.nodes()[self.at.link.node()];
-        let twist = &motion.velocities.nodes()[self.at.link.node()];
-        let arm = node.rotation * self.at.pose.origin;
+        let Moving { arm, velocity, .. } = motion.origin(&self.at);
+        let node = self.at.link.node();
         let direction = match self.axes {
             Axes::Ground => self.direction,
-            Axes::Mount => node.rotation * (self.at.pose.rotation * self.direction),
+            Axes::Mount => motion.positions.nodes()[node].rotation * (self.at.pose.rotation * self.direction),
         };
         let velocity = match self.acts {
-            Acts::Force => twist.linear + twist.angular.cross(&arm),
-            Acts::Moment => twist.angular,
+            Acts::Force => velocity,
+            Acts::Moment => motion.velocities.nodes()[node].angular,
         };
         let speed = direction.dot(&velocity);
         let size: f64 = self.drives.iter().map(|drive| drive.torque(motion.t, 0.0, speed)).sum();

@@ -53,14 +53,8 @@ pub(crate) struct PlacedStrut {
 impl PlacedStrut {
     /// The way from one end to the other, its rate, and the arms of the ends about the origins of their nodes.
     fn span(&self, motion: &Motion<'_>) -> (Vector3<f64>, Vector3<f64>, [Vector3<f64>; 2]) {
-        let ends = self.ends.map(|at| {
-            let node = &motion.positions.nodes()[at.link.node()];
-            let twist = &motion.velocities.nodes()[at.link.node()];
-            let arm = node.rotation * at.pose.origin;
-            (node.origin + arm, twist.linear + twist.angular.cross(&arm), arm)
-        });
-        let [(p1, v1, arm1), (p2, v2, arm2)] = ends;
-        (p2 - p1, v2 - v1, [arm1, arm2])
+        let [one, two] = self.ends.map(|at| motion.origin(&at));
+        (two.point - one.point, two.velocity - one.velocity, [one.arm, two.arm])
     }
 }
 

@@ -3,9 +3,9 @@
 use super::{Clearance, ClearanceModel, ContactIntegrals, ContactPoint, Side};
 use crate::contact_load::{ContactLoad, kept};
 use linkdyn_contact::{Centre, NormalForce, NormalModel, Skewed, Touch};
-use linkdyn_dynamics::{Internals, Load, Loads, Motion};
+use linkdyn_dynamics::{Internals, Load, Loads, Motion, Moving};
 use linkdyn_friction::Bristle;
-use linkdyn_kinematics::{Attachment, Closure, Positions, Row, Tree, Velocities, Wrench};
+use linkdyn_kinematics::{Attachment, Closure, Positions, Row, Tree, Wrench};
 use nalgebra::{Matrix3, Vector3};
 
 /// A joint with clearance as a load.
@@ -97,7 +97,7 @@ impl ClearanceJoint {
     }
 
     fn pair(&self, motion: &Motion<'_>) -> Pair {
-        let centre = |at: &Attachment| centre(at, &self.axis, motion.positions, motion.velocities);
+        let centre = |at: &Attachment| centre(at, &self.axis, motion);
         Pair {
             bearing: centre(&self.bearing),
             journal: centre(&self.journal),
@@ -127,15 +127,13 @@ impl ClearanceJoint {
 }
 
 /// A frame's origin and axis in motion.
-fn centre(at: &Attachment, axis: &Vector3<f64>, positions: &Positions, velocities: &Velocities) -> Centre {
-    let node = &positions.nodes()[at.link.node()];
-    let twist = &velocities.nodes()[at.link.node()];
-    let arm = node.rotation * at.pose.origin;
+fn centre(at: &Attachment, axis: &Vector3<f64>, motion: &Motion<'_>) -> Centre {
+    let Moving { point, velocity, .. } = motion.origin(at);
     Centre {
-        point: node.origin + arm,
-        velocity: twist.linear + twist.angular.cross(&arm),
-        spin: twist.angular,
-        axis: node.rotation * (at.pose.rotation * axis),
+        point,
+        velocity,
+        spin: motion.velocities.nodes()[at.link.node()].angular,
+        axis: motion.positions.nodes()[at.link.node()].rotation * (at.pose.rotation * axis),
     }
 }
 
