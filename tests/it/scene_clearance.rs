@@ -1,8 +1,9 @@
 //! Clearance in scene files: of revolute and ball joints, cut and in the tree; the same linkage as in Rust, names in starts, and runs.
 
-use linkdyn_contact::{ContactLaw, Fit, ForcePoint, NormalLaw, RestitutionLaw};
+use crate::hung_rod;
+use linkdyn_contact::ForcePoint;
 use linkdyn_dynamics::RigidInertia;
-use linkdyn_friction::{BristleStart, Guard, LuGre};
+use linkdyn_friction::BristleStart;
 use linkdyn_integrators::Dop853;
 use linkdyn_kinematics::Joint;
 use linkdyn_mechanisms::{Clearance, ClearanceModel, Linkage, Mount, Scene, Side, file};
@@ -27,23 +28,11 @@ guard = "cap"
 "#;
 
 fn clearance(model: ClearanceModel) -> Clearance {
-    let lugre = LuGre {
-        static_coefficient: 0.2,
-        kinetic_coefficient: 0.1,
-        stribeck_speed: 0.02,
-        bristle_stiffness: 600.0,
-        bristle_damping: 10.0,
-        viscous_coefficient: 0.01,
-        guard: Guard::Cap,
-    };
     Clearance {
-        fit: Fit::new(0.005, 0.004).expect("a pin in a hole"),
         bearing: Side::Successor,
-        model,
-        law: ContactLaw::from(NormalLaw::new(1e9, 1.5, RestitutionLaw::Exact.with(0.6)).expect("in range")),
-        friction: Some(lugre.into()),
         bristle_start: BristleStart::Steady,
         force_point: ForcePoint::OwnSurface,
+        ..hung_rod::clearance(model, hung_rod::CLEARANCE)
     }
 }
 
