@@ -46,9 +46,9 @@ pub struct Record {
     before: (f64, Vec<f64>),
 }
 
-/// Share of the energy in motion that may be missing. The coarsest of the published runs stay far below it; a run that left its branch
-/// at a singular position does not.
-const MOST_ENERGY_LOST: f64 = 0.1;
+/// Share of the energy in motion that may be missing. RSRRR by Newmark's method with steps of 1e-2 s and the published runs of RSUP stay
+/// below 1e-3; runs of `n_four_bar` that left their branch at a singular position lack 0.02 and more.
+const MOST_ENERGY_LOST: f64 = 0.01;
 
 /// A quantity in time, by steps; where steps are many only the largest value between two points is kept.
 #[derive(Clone, Debug, Default)]
